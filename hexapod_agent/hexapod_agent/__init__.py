@@ -1,0 +1,1 @@
+"""DDPG agent that observes a chosen set of sensors, its Gymnasium environment and its training."""

@@ -1,0 +1,1 @@
+"""Central pattern generator: coupled Hopf oscillators and their mapping to joint angles."""

@@ -1,0 +1,1 @@
+"""Designed experiments over sensor sets: plans, campaigns, bags, regression and report."""

@@ -1,0 +1,33 @@
+"""Package hexapod_doe, as colcon and ament install it."""
+
+from setuptools import find_packages, setup
+
+NAME = 'hexapod_doe'
+
+setup(
+    name=NAME,
+    version='0.1.0',
+    description='Designed experiments over sensor sets: plans, campaigns, bags, regression and report.',
+    license='Apache-2.0',
+    maintainer='Hexapod team',
+    maintainer_email='team@hexapod.invalid',
+    packages=find_packages(exclude=['test']),
+    package_data={'hexapod_doe': ['templates/*', '*.yaml']},
+    data_files=[
+        ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
+        (f'share/{NAME}', ['package.xml']),
+    ],
+    install_requires=['setuptools'],
+    extras_require={'test': ['pytest']},
+    zip_safe=False,
+    entry_points={
+        'console_scripts': [
+            'manager_node = hexapod_doe.manager_node:main',
+            'recorder_node = hexapod_doe.recorder_node:main',
+            'player_node = hexapod_doe.player_node:main',
+            'plan = hexapod_doe.plan:main',
+            'analyze = hexapod_doe.analyze:main',
+            'run_case = hexapod_doe.run_case:main',
+        ],
+    },
+)

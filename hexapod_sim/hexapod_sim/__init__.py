@@ -1,0 +1,1 @@
+"""MuJoCo model of the hexapod, its sensors and the line-following task, as a node and as a library."""

@@ -1,0 +1,32 @@
+"""Package hexapod_bringup, as colcon and ament install it."""
+
+from glob import glob
+
+from setuptools import find_packages, setup
+
+NAME = 'hexapod_bringup'
+
+setup(
+    name=NAME,
+    version='0.1.0',
+    description='Launch files, configuration and the composed worker of the hexapod graph.',
+    license='Apache-2.0',
+    maintainer='Hexapod team',
+    maintainer_email='team@hexapod.invalid',
+    packages=find_packages(exclude=['test']),
+    data_files=[
+        ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
+        (f'share/{NAME}', ['package.xml']),
+        (f'share/{NAME}/launch', glob('launch/*')),
+        (f'share/{NAME}/config', glob('config/*')),
+        (f'share/{NAME}/urdf', glob('urdf/*')),
+    ],
+    install_requires=['setuptools'],
+    extras_require={'test': ['pytest']},
+    zip_safe=False,
+    entry_points={
+        'console_scripts': [
+            'worker_node = hexapod_bringup.worker_node:main',
+        ],
+    },
+)

@@ -1,0 +1,1 @@
+"""A small `ros2` command for machines that have rclpy from PyPI and no ROS 2 install."""
