@@ -1,0 +1,191 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Records of what an analysis adds to the fitted model: the parts that the article did not ask.
+
+Every number in a map belongs to the combination whose label is the key, in original units.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+Bounds = tuple[float | None, float | None]
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """One number of one combination with its interval."""
+
+    fit: float
+    ci: Bounds
+
+
+@dataclass(frozen=True)
+class EstimandResult:
+    """All combinations under one declared summary of a case's runs."""
+
+    name: str
+    """`mean`, `iqm`, `best_of:3`, …"""
+    description: str
+    terms: tuple[str, ...]
+    coef: Mapping[str, float]
+    resamples: int
+    predictions: Mapping[str, Estimate]
+    ranking: tuple[str, ...]
+    choice: str
+
+
+@dataclass(frozen=True)
+class TwoPart:
+    """Probability of a failed training, and reward given success."""
+
+    threshold: float
+    """Runs below it count as failed."""
+    threshold_rule: str
+    runs: int
+    failures: int
+    failures_by_case: Mapping[str, int]
+    failure_terms: tuple[str, ...]
+    failure_coef: Mapping[str, float]
+    """Log-odds of failure per coded unit."""
+    failure_se: Mapping[str, float]
+    success_terms: tuple[str, ...]
+    success_coef: Mapping[str, float]
+    mean_failed: float
+    p_failure: Mapping[str, Estimate]
+    reward_success: Mapping[str, Estimate]
+    expected: Mapping[str, Estimate]
+    """(1−π)·reward given success + π·mean of the failed."""
+    ranking: tuple[str, ...]
+    """By expected reward."""
+    choice: str
+
+
+@dataclass(frozen=True)
+class RankUncertainty:
+    """How sure the order of the combinations is, by draws from the fitted model."""
+
+    draws: int
+    p_best: Mapping[str, float]
+    p_top3: Mapping[str, float]
+    rank_interval: Mapping[str, tuple[int, int]]
+    """Ranks that hold with the analysis' confidence."""
+    groups: tuple[tuple[str, ...], ...]
+    """Combinations, best first, that can't be told from the first one of their group."""
+
+
+@dataclass(frozen=True)
+class Attribution:
+    """What depends on the name that is given to a confounded pair."""
+
+    ambiguous: Mapping[str, tuple[str, ...]]
+    """Each ambiguous term of the model and the terms it may stand for."""
+    attributions: int
+    """Ways to name them all."""
+    examined: int
+    winners: Mapping[str, int]
+    """Best combination under each naming and how many namings agree."""
+    rank_range: Mapping[str, tuple[int, int]]
+    fit_range: Mapping[str, tuple[float, float]]
+    safe: tuple[str, ...]
+    """Combinations whose prediction is the same under every naming."""
+
+
+@dataclass(frozen=True)
+class Averaging:
+    """Predictions averaged over models, weighted by exp(−BIC/2)."""
+
+    models: int
+    weights: tuple[tuple[tuple[str, ...], float], ...]
+    """The heaviest models: terms and weight."""
+    p_active: Mapping[str, float]
+    """Weight of the models that hold each term."""
+    predictions: Mapping[str, Estimate]
+    ranking: tuple[str, ...]
+    choice: str
+
+
+@dataclass(frozen=True)
+class ConfirmationCheck:
+    """One combination's confirmation runs against the interval stated before them."""
+
+    label: str
+    predicted: float
+    interval: Bounds
+    """Prediction interval of the mean of `runs` new runs."""
+    runs: int
+    observed: tuple[float, ...]
+    observed_mean: float | None
+    """None while there are no runs yet."""
+    passed: bool | None
+
+
+@dataclass(frozen=True)
+class Confirmation:
+    """The validation rule and its outcome."""
+
+    level: float
+    rule: str
+    checks: tuple[ConfirmationCheck, ...]
+
+
+@dataclass(frozen=True)
+class Device:
+    """One purchasable device and the observations that it yields."""
+
+    name: str
+    yields: str
+    cost: float
+    mass: float
+    power: float
+    failure_probability: float
+
+
+@dataclass(frozen=True)
+class PricedSet:
+    """One combination with the devices it needs and what they take."""
+
+    label: str
+    devices: tuple[str, ...]
+    cost: float
+    mass: float
+    power: float
+    failure_probability: float
+    """Probability that at least one of its devices breaks."""
+    fit: float
+    ci: Bounds
+    p_front: float
+    """Share of draws in which no cheaper-or-equal set has a higher reward."""
+    on_front: bool
+    p_not_worse: float
+    """Probability that it is at most delta below the best."""
+
+
+@dataclass(frozen=True)
+class Breakage:
+    """What is lost when one device of the chosen set breaks."""
+
+    device: str
+    lost: str
+    remaining: str
+    fit: float
+    loss: float
+    loss_ci: Bounds
+
+
+@dataclass(frozen=True)
+class Purchase:
+    """From statistics to a shopping list."""
+
+    devices: tuple[Device, ...]
+    currency: str
+    delta: float
+    confidence: float
+    sets: tuple[PricedSet, ...]
+    """All combinations in Yates order."""
+    front: tuple[str, ...]
+    """Pareto front of the fitted reward against cost, cheapest first."""
+    cheapest: str
+    """Cheapest set that is not worse than the best by more than delta, with that confidence."""
+    breakage: tuple[Breakage, ...]
+    """For the cheapest set."""
