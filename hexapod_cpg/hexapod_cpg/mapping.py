@@ -1,0 +1,115 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""From actions to commands of the pattern generator, and from oscillators to joint angles.
+
+    hip   = hip0 + s k_h x            s makes +x forwards on both sides
+    knee  = knee0 + b_k - k_k y       y < 0 is swing: the leg lifts
+    ankle = ankle0 + b_a - k_a y
+
+The article leaves open which five numbers per leg the agent sets. Reading D1 takes (k_h, k_k,
+b_k, k_a, b_a); reading D2 takes (mu, omega, k_h, k_k, k_a) and leaves the biases at zero.
+"""
+
+from dataclasses import dataclass, fields
+from types import MappingProxyType
+
+import numpy as np
+
+from hexapod_sim import robot
+
+_LEGS = len(robot.LEGS)
+_NEUTRAL = robot.NEUTRAL_POSE.reshape(_LEGS, 3)
+
+# Command fields that the five actions of a leg set, in order.
+READINGS = MappingProxyType(
+    {
+        'D1': ('hip_gain', 'knee_gain', 'knee_bias', 'ankle_gain', 'ankle_bias'),
+        'D2': ('mu', 'frequency', 'hip_gain', 'knee_gain', 'ankle_gain'),
+    }
+)
+ACTIONS_PER_LEG = 5
+ACTION_SIZE = _LEGS * ACTIONS_PER_LEG
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """What the pattern generator is told for one control period; arrays (..., 6), one per leg."""
+
+    mu: np.ndarray
+    """Squared radius of the limit cycle [1]."""
+    frequency: np.ndarray
+    """Angular frequency of the oscillator [rad/s]."""
+    hip_gain: np.ndarray
+    """Hip angle per unit of x [rad]."""
+    knee_gain: np.ndarray
+    """Knee angle per unit of -y [rad]."""
+    knee_bias: np.ndarray
+    """[rad]"""
+    ankle_gain: np.ndarray
+    """Ankle angle per unit of -y [rad]."""
+    ankle_bias: np.ndarray
+    """[rad]"""
+
+
+COMMAND_FIELDS = tuple(field.name for field in fields(Command))
+
+
+@dataclass(frozen=True)
+class ActionRanges:
+    """Value at action zero and half width at action one, for each field of a command.
+
+    These ranges cannot topple the robot; wider ones end most early episodes in a fall or a spin.
+    Action zero is a straight tripod walk.
+    """
+
+    mu: tuple[float, float] = (1.0, 0.3)
+    frequency: tuple[float, float] = (2.0 * np.pi / 0.6, 2.0)
+    hip_gain: tuple[float, float] = (0.25, 0.15)
+    knee_gain: tuple[float, float] = (0.25, 0.10)
+    knee_bias: tuple[float, float] = (0.0, 0.10)
+    ankle_gain: tuple[float, float] = (0.0, 0.15)
+    ankle_bias: tuple[float, float] = (0.0, 0.10)
+
+
+DEFAULT_RANGES = ActionRanges()
+
+
+def command_from_action(
+    action: np.ndarray, reading: str = 'D1', ranges: ActionRanges = DEFAULT_RANGES
+) -> Command:
+    """Turn the network's action into a command.
+
+    Args:
+        action: Leg-major actions (..., 30), each in [-1, 1]; widened to float64 first.
+        reading: Key of ``READINGS``.
+        ranges: Centre and half width of each field.
+
+    Raises:
+        ValueError: The reading is unknown or the action has another size.
+    """
+    if reading not in READINGS:
+        raise ValueError(f'action reading {reading!r}: expected one of {", ".join(READINGS)}')
+    action = np.asarray(action, dtype=np.float64)
+    if action.shape[-1:] != (ACTION_SIZE,):
+        raise ValueError(f'action: expected shape (..., {ACTION_SIZE}), got {action.shape}')
+    shape = action.shape[:-1]
+    columns = action.reshape(*shape, _LEGS, ACTIONS_PER_LEG)
+    values = {}
+    for name in COMMAND_FIELDS:
+        centre, half_width = getattr(ranges, name)
+        if name in READINGS[reading]:
+            column = columns[..., READINGS[reading].index(name)]
+            values[name] = centre + half_width * column
+        else:
+            values[name] = np.full((*shape, _LEGS), centre)
+    return Command(**values)
+
+
+def joint_targets(command: Command, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Return the joint angles (..., 18) [rad] of oscillator states x and y, each (..., 6)."""
+    targets = np.empty((*x.shape, 3))
+    targets[..., 0] = _NEUTRAL[:, 0] + robot.HIP_FORWARD_SIGN * command.hip_gain * x
+    targets[..., 1] = _NEUTRAL[:, 1] + command.knee_bias - command.knee_gain * y
+    targets[..., 2] = _NEUTRAL[:, 2] + command.ankle_bias - command.ankle_gain * y
+    return targets.reshape(*x.shape[:-1], -1)

@@ -1,0 +1,57 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Commands, oscillator states and joint trajectories as ROS messages."""
+
+from __future__ import annotations
+
+from array import array
+
+import numpy as np
+from hexapod_interfaces.msg import CpgCommand
+from hexapod_node.stamps import duration_message
+from hexapod_sim.robot import CONTROL_PERIOD_NS, JOINTS, SUBSTEPS
+from numpy.typing import NDArray
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+from hexapod_cpg.mapping import COMMAND_FIELDS, Command
+
+_SUBSTEP_NS = CONTROL_PERIOD_NS // SUBSTEPS
+
+
+def command_to_message(command: Command, message: CpgCommand) -> None:
+    """Write a command of shape (6,) per field into a message."""
+    for field in COMMAND_FIELDS:
+        setattr(message, field, np.asarray(getattr(command, field), dtype=np.float64))
+
+
+def command_from_message(message: CpgCommand) -> Command:
+    """Return the command that a message carries.
+
+    Raises:
+        ValueError: a field holds a number that is not finite; the text names the field.
+    """
+    values = {}
+    for field in COMMAND_FIELDS:
+        value = np.asarray(getattr(message, field), dtype=np.float64)
+        if not np.isfinite(value).all():
+            raise ValueError(
+                f'cpg/command: {field} is {value.tolist()}, expected 6 finite numbers'
+            )
+        values[field] = value
+    return Command(**values)
+
+
+def new_trajectory() -> JointTrajectory:
+    """Return a trajectory message with its names and times, for `targets_to_message` to fill."""
+    points = [
+        JointTrajectoryPoint(time_from_start=duration_message(_SUBSTEP_NS * (substep + 1)))
+        for substep in range(SUBSTEPS)
+    ]
+    return JointTrajectory(joint_names=list(JOINTS), points=points)
+
+
+def targets_to_message(targets: NDArray[np.float64], message: JointTrajectory) -> None:
+    """Write joint targets (SUBSTEPS, 18), rad, into a trajectory message."""
+    for point, target in zip(message.points, targets, strict=True):
+        point.positions = array('d', target.tobytes())

@@ -1,0 +1,159 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The robot on its floor: MuJoCo physics advanced one control period at a time, with queries."""
+
+import math
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from hexapod_sim import robot, sensors
+
+_MODEL_PATH = Path(__file__).with_name('hexapod.xml')
+_KEYFRAME = 'standing'
+# The servos give under the weight: after this many control periods the body has come to rest.
+_SETTLE_PERIODS = 80
+# Sum of squared generalised velocities [(m/s)^2 and (rad/s)^2] that no working servo reaches
+# (all 18 at ten times their no-load speed); beyond it, or at NaN, the state is lost.
+_SQUARED_SPEED_LIMIT = len(robot.JOINTS) * (10 * robot.NO_LOAD_SPEED) ** 2
+_NO_SENSORS = int(mujoco.mjtDisableBit.mjDSBL_SENSOR)
+
+
+class SimulationDivergedError(RuntimeError):
+    """The physics left the range of meaningful states; reset the simulation to go on."""
+
+
+class Simulation:
+    """Physics of one hexapod.
+
+    Attributes:
+        model: The compiled hexapod.xml.
+        data: State of the model; sensor readings are those at the end of the last period.
+        sensor_blocks: Where each group of sensors lies in ``data.sensordata``.
+    """
+
+    def __init__(self) -> None:
+        self.model = mujoco.MjModel.from_xml_path(str(_MODEL_PATH))
+        self.data = mujoco.MjData(self.model)
+        self.sensor_blocks = sensors.locate_blocks(self.model)
+        self._options = self.model.opt
+        self._flags_with_sensors = self._options.disableflags
+        self._steps_per_target = whole_ratio(robot.TARGET_PERIOD_NS, robot.PHYSICS_STEP_NS)
+        # Views into MuJoCo's arrays, fetched once: attribute access costs more than the copy.
+        self._ctrl = self.data.ctrl
+        self._qpos = self.data.qpos
+        self._qvel = self.data.qvel
+        self._standing_qpos = self._settle()
+        self.reset(0.0)
+
+    def reset(self, y: float, yaw: float = 0.0) -> None:
+        """Stand the robot still on the floor at (0, y) of odom, heading ``yaw``.
+
+        Everything that MuJoCo carries from step to step is cleared first, so that what follows
+        equals, to the last bit, what follows in a new simulation.
+
+        Args:
+            y: Lateral position of base_link in odom [m].
+            yaw: Heading [rad], counter-clockwise from odom's x axis.
+        """
+        mujoco.mj_resetData(self.model, self.data)
+        self._qpos[:] = self._standing_qpos
+        self._qpos[1] = y
+        self._qpos[3:7] = math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)
+        self._ctrl[:] = robot.NEUTRAL_POSE
+        mujoco.mj_forward(self.model, self.data)
+
+    def advance(self, targets: np.ndarray) -> None:
+        """Advance one control period, giving each joint target to the servos in turn.
+
+        Args:
+            targets: Joint angles (SUBSTEPS, 18) [rad]; row i holds from i to i + 1 times the
+                target period.
+
+        Raises:
+            ValueError: The targets have another shape or are not finite.
+            SimulationDivergedError: The state left the meaningful range.
+        """
+        _check_targets(targets)
+        # Position and velocity stages of the first step were computed by the last mj_forward.
+        # Sensors are read once per period, so only the closing mj_forward evaluates them.
+        model, data, ctrl = self.model, self.data, self._ctrl
+        self._options.disableflags = self._flags_with_sensors | _NO_SENSORS
+        ctrl[:] = targets[0]
+        mujoco.mj_step2(model, data)
+        if self._steps_per_target > 1:
+            mujoco.mj_step(model, data, self._steps_per_target - 1)
+        for target in targets[1:]:
+            ctrl[:] = target
+            mujoco.mj_step(model, data, self._steps_per_target)
+        self._options.disableflags = self._flags_with_sensors
+        mujoco.mj_forward(model, data)
+        self._check_state()
+
+    def set_goal_line(self, y: float) -> None:
+        """Move the visible goal line to y [m] of odom; it touches nothing."""
+        self.data.mocap_pos[0, 1] = y
+
+    @property
+    def position(self) -> np.ndarray:
+        """Position of base_link in odom (3,) [m]."""
+        return self._qpos[:3].copy()
+
+    @property
+    def orientation(self) -> np.ndarray:
+        """Orientation of base_link in odom, quaternion x y z w (4,)."""
+        return self._qpos[[4, 5, 6, 3]]
+
+    def pose(self) -> tuple[float, float, float, float, float, float]:
+        """Return x, y, z [m] and roll, pitch, yaw [rad] of base_link in odom.
+
+        Angles are the fixed-axis roll, pitch, yaw of REP-103.
+        """
+        x, y, z, qw, qx, qy, qz = self._qpos[:7].tolist()
+        roll = math.atan2(2 * (qw * qx + qy * qz), 1 - 2 * (qx * qx + qy * qy))
+        pitch = math.asin(max(-1.0, min(1.0, 2 * (qw * qy - qz * qx))))
+        yaw = math.atan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz))
+        return x, y, z, roll, pitch, yaw
+
+    def _settle(self) -> np.ndarray:
+        """Let the keyframe's pose sink onto the floor and return its configuration at rest."""
+        key = self.model.key(_KEYFRAME).id
+        mujoco.mj_resetDataKeyframe(self.model, self.data, key)
+        mujoco.mj_step(self.model, self.data, _SETTLE_PERIODS * robot.SUBSTEPS)
+        rest = self._qpos.copy()
+        rest[:2] = 0.0
+        return rest
+
+    def _check_state(self) -> None:
+        """Raise if the state diverged; the comparison is false for NaN."""
+        if not self._qvel @ self._qvel < _SQUARED_SPEED_LIMIT:
+            raise SimulationDivergedError(
+                f'simulation: state diverged before t = {self.data.time:.3f} s, expected '
+                f'squared speed below {_SQUARED_SPEED_LIMIT:.0f}, got {self._qvel @ self._qvel}'
+            )
+
+
+def whole_ratio(period_ns: int, step_ns: int) -> int:
+    """Return how many steps make a period.
+
+    Raises:
+        ValueError: The period is not a whole number of steps.
+    """
+    count, rest = divmod(period_ns, step_ns)
+    if rest or count < 1:
+        raise ValueError(
+            f'physics step {step_ns} ns: expected a whole fraction of the period {period_ns} ns'
+        )
+    return count
+
+
+def _check_targets(targets: np.ndarray) -> None:
+    """Raise ValueError unless the targets are finite joint angles of one control period."""
+    expected = (robot.SUBSTEPS, len(robot.JOINTS))
+    if targets.shape != expected:
+        raise ValueError(f'joint targets: expected shape {expected}, got {targets.shape}')
+    # One reduction is cheaper than isfinite().all(); NaN and infinity both survive a sum.
+    if not math.isfinite(targets.sum()):
+        raise ValueError('joint targets: expected finite angles, got NaN or infinity')

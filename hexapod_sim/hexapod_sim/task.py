@@ -1,0 +1,213 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The line-following task: start offsets, reward terms and the ends of an episode."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hexapod_sim import robot
+from hexapod_sim.simulation import Simulation, SimulationDivergedError
+
+_PERIOD_S = robot.CONTROL_PERIOD_NS * 1e-9
+TERM_NAMES = ('velocity', 'closeness', 'orientation', 'height', 'alive')
+
+
+@dataclass(frozen=True)
+class TaskConfig:
+    """Weights, scales and limits of the task.
+
+    The defaults keep every reasonable step positive, so that ending the episode early never
+    pays: with the robot upright, within 1 m of the line and not walking backwards, velocity and
+    closeness are at least zero and the two penalties take at most the constant.
+    """
+
+    time_limit_steps: int = 600
+    """Control periods of a full episode (15 s)."""
+    start_offset: float = 0.5
+    """Largest distance from the line at the start [m]; drawn uniformly to either side."""
+    line_y: float = 0.0
+    """Where the goal line runs along odom's x axis [m]."""
+
+    velocity_weight: float = 1.0
+    closeness_weight: float = 1.0
+    orientation_weight: float = 0.5
+    height_weight: float = 0.5
+    alive_reward: float = 2.0
+    """Constant earned in every step."""
+
+    velocity_scale: float = 0.3
+    """Speed along the line that earns one [m/s]."""
+    orientation_scale: float = 0.35
+    """Angle from upright, or from the line's direction, that costs one [rad]."""
+    yaw_share: float = 1.0
+    """How much of the squared yaw enters the orientation penalty: 1 as roll and pitch, 0 none."""
+    walking_height: float = 0.134
+    """Mean height of base_link in the constant gait, measured [m]."""
+    height_scale: float = 0.3
+    """Share of the walking height whose error costs one."""
+
+    max_tilt: float = 1.0
+    """Roll or pitch beyond which the robot counts as flipped [rad]."""
+    min_height: float = 0.05
+    """Height of base_link under which the robot counts as collapsed [m]."""
+    max_offset: float = 2.0
+    """Distance from the line beyond which the robot counts as strayed [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What one control period earned, and whether the episode goes on."""
+
+    step: int
+    """Control periods since the episode began; 0 is the start and earns nothing."""
+    reward: float
+    """Sum of the terms."""
+    terms: dict[str, float]
+    """Weighted reward terms by name."""
+    terminated: bool
+    """The episode failed here: no future reward."""
+    truncated: bool
+    """The time limit was reached: the future goes on."""
+    cause: str
+    """Why the episode ended; empty while it runs."""
+
+
+def episode_seed(run_seed: int, episode: int) -> int:
+    """Return the seed of one episode (uint64), well mixed from the run's seed and its number."""
+    return int(np.random.SeedSequence((run_seed, episode)).generate_state(1, np.uint64)[0])
+
+
+def velocity_term(velocity: float, config: TaskConfig) -> float:
+    """Reward speed along the line, linear between -1 and 1.5 times the scale."""
+    return min(max(velocity / config.velocity_scale, -1.0), 1.5)
+
+
+def closeness_term(offset: float) -> float:
+    """Reward being near the line, with the same slope at every distance."""
+    return 1.0 - abs(offset)
+
+
+def orientation_penalty(roll: float, pitch: float, yaw: float, config: TaskConfig) -> float:
+    """Penalise squared tilt and heading error, at most 2."""
+    squared = roll * roll + pitch * pitch + config.yaw_share * yaw * yaw
+    return min(squared / config.orientation_scale**2, 2.0)
+
+
+def height_penalty(height: float, config: TaskConfig) -> float:
+    """Penalise the squared error from the walking height, at most 2."""
+    error = (height - config.walking_height) / (config.height_scale * config.walking_height)
+    return min(error * error, 2.0)
+
+
+def failure_cause(
+    roll: float, pitch: float, height: float, offset: float, config: TaskConfig
+) -> str:
+    """Return why the robot can no longer do the task, or an empty string."""
+    if max(abs(roll), abs(pitch)) > config.max_tilt:
+        return 'flipped'
+    if height < config.min_height:
+        return 'collapsed'
+    if abs(offset) > config.max_offset:
+        return 'strayed'
+    return ''
+
+
+class LineTask:
+    """Walk along the line y = line_y of odom in +x direction, starting beside it.
+
+    Attributes:
+        config: Weights, scales and limits.
+        simulation: The robot.
+    """
+
+    def __init__(self, config: TaskConfig | None = None) -> None:
+        self.config = config or TaskConfig()
+        self.simulation = Simulation()
+        self._line_y = self.config.line_y
+        self._step = 0
+        self._x = 0.0
+        self._over = True
+
+    @property
+    def line_y(self) -> float:
+        """Where the goal line runs [m]; may be moved during an episode."""
+        return self._line_y
+
+    @line_y.setter
+    def line_y(self, value: float) -> None:
+        self._line_y = float(value)
+        self.simulation.set_goal_line(self._line_y)
+
+    @property
+    def line_offset(self) -> float:
+        """Distance of base_link from the line [m], positive to the left of it."""
+        return float(self.simulation.data.qpos[1]) - self._line_y
+
+    def reset(self, seed: int) -> Outcome:
+        """Start an episode: the robot stands beside the line, its offset drawn from the seed."""
+        limit = self.config.start_offset
+        offset = np.random.default_rng(seed).uniform(-limit, limit)
+        self.simulation.reset(self._line_y + offset)
+        self.simulation.set_goal_line(self._line_y)
+        self._step = 0
+        self._x = 0.0
+        self._over = False
+        return Outcome(0, 0.0, dict.fromkeys(TERM_NAMES, 0.0), False, False, '')
+
+    def advance(self, targets: np.ndarray) -> Outcome:
+        """Advance one control period and judge it.
+
+        Args:
+            targets: Joint angles (SUBSTEPS, 18) [rad].
+
+        Raises:
+            RuntimeError: The episode is over or has not begun.
+            ValueError: The targets have a wrong shape or are not finite.
+        """
+        if self._over:
+            raise RuntimeError('line task: expected reset() before advance(), no episode runs')
+        y = float(self.simulation.data.qpos[1])
+        try:
+            self.simulation.advance(targets)
+        except SimulationDivergedError:
+            return self._diverged(y)
+        self._step += 1
+        return self._judge()
+
+    def _judge(self) -> Outcome:
+        """Return the outcome of the period that just ended."""
+        config = self.config
+        x, y, height, roll, pitch, yaw = self.simulation.pose()
+        offset = y - self._line_y
+        velocity = (x - self._x) / _PERIOD_S
+        self._x = x
+        terms = {
+            'velocity': config.velocity_weight * velocity_term(velocity, config),
+            'closeness': config.closeness_weight * closeness_term(offset),
+            'orientation': -config.orientation_weight
+            * orientation_penalty(roll, pitch, yaw, config),
+            'height': -config.height_weight * height_penalty(height, config),
+            'alive': config.alive_reward,
+        }
+        cause = failure_cause(roll, pitch, height, offset, config)
+        terminated = bool(cause)
+        truncated = not terminated and self._step >= config.time_limit_steps
+        self._over = terminated or truncated
+        return Outcome(
+            self._step,
+            sum(terms.values()),
+            terms,
+            terminated,
+            truncated,
+            'time_limit' if truncated else cause,
+        )
+
+    def _diverged(self, y: float) -> Outcome:
+        """End the episode without reward, the robot put back so that its readings are finite."""
+        self.simulation.reset(y)
+        self.simulation.set_goal_line(self._line_y)
+        self._step += 1
+        self._over = True
+        return Outcome(self._step, 0.0, dict.fromkeys(TERM_NAMES, 0.0), True, False, 'diverged')
