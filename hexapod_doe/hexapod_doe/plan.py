@@ -1,0 +1,159 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Command line that makes a campaign's plan, extends it, and says what it is able to see."""
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from hexapod_doe.aliases import alias_sets, representatives
+from hexapod_doe.augment import aimed_model, d_optimal, foldover, semifold, variance_ratios
+from hexapod_doe.blocks import confounded_with_blocks
+from hexapod_doe.design import Design, fraction, from_generators
+from hexapod_doe.plan_arguments import parse
+from hexapod_doe.plan_file import read_plan, write_plan
+from hexapod_doe.plan_table import follow_up, make_plan
+from hexapod_doe.plan_types import Confirmation, Plan
+from hexapod_doe.planner import Budget, describe, options, propose
+from hexapod_doe.power import power, smallest_effect
+from hexapod_doe.power_simulation import RunModel, simulate_power
+from hexapod_doe.terms import terms_up_to
+
+_ROMAN = {2: 'II', 3: 'III', 4: 'IV', 5: 'V', 6: 'VI', 7: 'VII', 8: 'VIII', 9: 'IX'}
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line; without a command's name it makes a plan."""
+    args = parse(list(sys.argv[1:] if arguments is None else arguments))
+    try:
+        _RUN[args.command](args)
+    except (ValueError, OSError) as error:
+        sys.exit(f'plan: {error}')
+
+
+def _make(args: argparse.Namespace) -> None:
+    design = _design(args)
+    blocks = args.blocks.split(',') if args.blocks else []
+    plan = make_plan(
+        design,
+        args.replicates,
+        args.seed,
+        common_seeds=args.common_seeds,
+        blocks=blocks,
+        confirmation=Confirmation(args.confirm_runs, args.confirm_level),
+    )
+    if blocks:
+        hidden = confounded_with_blocks(design.levels, design.factors, blocks)
+        print(f'Blocks hide: {"; ".join(hidden)}')
+    _finish(plan, plan.levels, args.out)
+
+
+def _fold(args: argparse.Namespace) -> None:
+    plan = read_plan(args.plan)
+    if args.keep:
+        added = semifold(plan.levels, plan.factors, args.on, args.keep)
+        how = f'semifold on {args.on}, cases with {args.keep}'
+    else:
+        added, how = foldover(plan.levels, plan.factors, args.on), f'foldover on {args.on}'
+    _extend(plan, added, how, args)
+
+
+def _augment(args: argparse.Namespace) -> None:
+    plan = read_plan(args.plan)
+    model = (
+        aimed_model(plan.levels, plan.factors, args.separate.split(','))
+        if args.separate
+        else terms_up_to(plan.factors, 2)
+    )
+    added = d_optimal(plan.levels, plan.factors, args.extra, model, args.seed)
+    ratios = variance_ratios(
+        np.vstack([plan.levels, added]), plan.factors, model, len(plan.levels)
+    )
+    _extend(plan, added, f'{args.extra} D-optimal cases', args)
+    for term, ratio in ratios.items():
+        if ratio > 1 + 1e-6:
+            print(f'{term}: variance {ratio:.2f} times that of a term clear in the first plan')
+
+
+def _extend(plan: Plan, added: np.ndarray, how: str, args: argparse.Namespace) -> None:
+    replicates = args.replicates or int(plan.rows['replicate'].max())
+    further = follow_up(plan, added, how, replicates, args.seed)
+    _finish(further, np.vstack([plan.levels, added]), args.out)
+
+
+def _power(args: argparse.Namespace) -> None:
+    design = _design(args)
+    terms = representatives(design.levels, design.factors, args.max_order)
+    runs, parameters = design.cases * args.replicates, 1 + len(terms)
+    print(f'{design.cases} cases x {args.replicates} replicates, {parameters} parameters')
+    smallest = smallest_effect(runs, parameters, args.sigma, args.alpha)
+    print(f'Smallest effect found with 80 % power at alpha {args.alpha:g}: {smallest:.4g}')
+    if args.effect is None:
+        return
+    found = power(args.effect, runs, parameters, args.sigma, args.alpha)
+    print(f'Power for an effect of {args.effect:g}: {found:.4f} if no run fails')
+    if args.failure:
+        model = RunModel(args.sigma, args.failure, args.loss, args.failure_sigma or args.sigma)
+        result = simulate_power(
+            design.levels,
+            design.factors,
+            terms,
+            args.effect,
+            args.replicates,
+            model,
+            args.alpha,
+            args.repeats,
+            args.seed,
+        )
+        print(
+            f'Power with {100 * args.failure:g} % failing runs: {result.power:.3f} '
+            f'(standard error {result.power_se:.3f}, {result.repeats} simulated campaigns)'
+        )
+
+
+def _hours(args: argparse.Namespace) -> None:
+    seconds = args.seconds_per_run / args.run_episodes
+    found = options(Budget(args.hours, seconds, args.workers), args.factors, args.episodes)
+    chosen = propose(found)
+    print('Proposed:')
+    print(describe(chosen, args.episodes, args.sigma))
+    for option in found:
+        if option is not chosen:
+            print('\nInstead:')
+            print(describe(option, args.episodes, args.sigma))
+
+
+def _design(args: argparse.Namespace) -> Design:
+    factors = int(args.factors) if args.factors.isdigit() else args.factors
+    if args.generators:
+        return from_generators(args.generators, factors)
+    return fraction(args.design, factors)
+
+
+def _finish(plan: Plan, levels: np.ndarray, out: Path) -> None:
+    """Write a plan and print what its cases can and cannot tell apart."""
+    write_plan(plan, out)
+    settings = plan.settings
+    assert settings is not None  # made here, not read
+    print(f'{len(plan.rows)} runs: {settings.cases} cases x {settings.replicates} -> {out}')
+    if settings.resolution is not None:
+        numeral = _ROMAN.get(settings.resolution, settings.resolution)
+        print(f'{settings.defining_relation}, resolution {numeral}')
+    mixed = [g.text for g in alias_sets(levels, plan.factors, 2) if len(g.terms) > 1]
+    print(f'Cannot separate: {"; ".join(mixed)}' if mixed else 'All terms to order 2 separate.')
+
+
+_RUN: dict[str, Callable[[argparse.Namespace], None]] = {
+    'make': _make,
+    'fold': _fold,
+    'augment': _augment,
+    'power': _power,
+    'hours': _hours,
+}
+
+if __name__ == '__main__':
+    main()

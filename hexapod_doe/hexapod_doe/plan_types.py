@@ -1,0 +1,84 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""What a campaign's plan is: its table of runs, how it was made, how it will be confirmed."""
+
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+
+@dataclass(frozen=True)
+class Confirmation:
+    """The rule that confirmation runs will be judged by, fixed before the first run."""
+
+    runs: int = 5
+    """m, the new training runs of each set that is confirmed."""
+    level: float = 0.95
+    """Confidence of the prediction interval of their mean."""
+    seeds: tuple[int, ...] = ()
+    """Their seeds, none of which the plan uses."""
+
+    def __post_init__(self) -> None:
+        if self.runs < 1:
+            raise ValueError(f'{self.runs} confirmation runs: expected at least 1')
+        if not 0 < self.level < 1:
+            raise ValueError(f'confirmation level {self.level}: expected between 0 and 1')
+
+    @property
+    def rule(self) -> str:
+        """The rule in words."""
+        return (
+            f'A set is confirmed if the mean response of {self.runs} new runs lies within the '
+            f'{100 * self.level:g} % prediction interval of the mean of {self.runs} runs, as the '
+            'final model gives it before these runs are started.'
+        )
+
+
+@dataclass(frozen=True)
+class PlanSettings:
+    """How a plan was made; stored beside it, enough to make it again."""
+
+    design: str
+    factors: str
+    generators: dict[str, str]
+    defining_relation: str
+    resolution: int | None
+    cases: int
+    replicates: int
+    seed: int
+    common_seeds: bool = False
+    blocks: tuple[str, ...] = ()
+    follows: str = ''
+    """What an augmenting plan adds to, and how; empty for a first plan."""
+    confirmation: Confirmation = field(default_factory=Confirmation)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain types, with the confirmation rule in words."""
+        mapping = asdict(self)
+        mapping['confirmation']['rule'] = self.confirmation.rule
+        return mapping
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A table of training runs, in standard order, and how it was made.
+
+    Columns: StdOrder, RunOrder, case, replicate, (block,) seed, run_id, observations, then one
+    column of -1 and +1 per factor.
+    """
+
+    rows: pd.DataFrame
+    settings: PlanSettings | None
+
+    @property
+    def factors(self) -> str:
+        """The factor letters: the one-letter columns."""
+        return ''.join(name for name in self.rows.columns if len(name) == 1)
+
+    @property
+    def levels(self) -> np.ndarray:
+        """The coded levels of each case, once. Shape: (cases, factors)."""
+        return self.rows.drop_duplicates('case')[list(self.factors)].to_numpy()

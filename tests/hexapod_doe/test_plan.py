@@ -1,0 +1,109 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The command line makes, extends and explains plans."""
+
+import subprocess
+import sys
+
+import pytest
+from hexapod_doe.plan import main
+from hexapod_doe.plan_file import read_plan
+
+
+@pytest.fixture
+def quarter(tmp_path):
+    """A plan file of the quarter fraction with two replicates."""
+    main(['--design', 'quarter', '--replicates', '2', '--out', str(tmp_path / 'plan.csv')])
+    return tmp_path / 'plan.csv'
+
+
+def test_a_plan_is_made_as_a_module_without_a_command_name(tmp_path):
+    out = tmp_path / 'plan.csv'
+    command = [sys.executable, '-m', 'hexapod_doe.plan', '--design', 'eighth']
+    command += ['--replicates', '1', '--seed', '1', '--out', str(out)]
+    result = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert 'I = ABCE = ABFG = ACDG = ADEF = BCDF = BDEG = CEFG, resolution IV' in result.stdout
+    assert 'AB + CE + FG' in result.stdout
+    assert len(read_plan(out).rows) == 16
+
+
+def test_generators_and_signs_choose_the_fraction(tmp_path, capsys):
+    main(['make', '--generators', 'D=-ABC', '--factors', '4', '--out', str(tmp_path / 'p.csv')])
+    assert 'I = -ABCD' in capsys.readouterr().out
+    assert len(read_plan(tmp_path / 'p.csv').levels) == 8
+
+
+def test_blocks_say_what_they_hide(tmp_path, capsys):
+    main(['--design', 'quarter', '--blocks', 'ACE', '--out', str(tmp_path / 'p.csv')])
+    assert 'Blocks hide: ACE + AFG' in capsys.readouterr().out
+
+
+def test_a_semifold_separates_the_pairs(quarter, capsys):
+    out = quarter.with_name('more.csv')
+    main(['fold', str(quarter), '--on', 'C', '--keep', 'A+', '--out', str(out)])
+    assert 'All terms to order 2 separate.' in capsys.readouterr().out
+    further = read_plan(out)
+    assert (len(further.levels), len(further.rows)) == (16, 32)
+    assert further.settings.follows == 'semifold on C, cases with A+'
+
+
+def test_a_full_foldover_says_that_it_does_not(quarter, capsys):
+    main(['fold', str(quarter), '--on', 'ABCDEFG', '--out', str(quarter.with_name('more.csv'))])
+    assert 'Cannot separate: CE + FG; CF + EG; CG + EF' in capsys.readouterr().out
+
+
+def test_eight_cases_separate_the_pairs(quarter, capsys):
+    out = quarter.with_name('more.csv')
+    main(['augment', str(quarter), '--extra', '8', '--replicates', '1', '--out', str(out)])
+    text = capsys.readouterr().out
+    assert 'All terms to order 2 separate.' in text
+    assert text.count('variance 1.25 times') == 6
+    assert len(read_plan(out).rows) == 8
+
+
+def test_augmentation_aims_at_named_terms(quarter, capsys):
+    out = quarter.with_name('more.csv')
+    main(['augment', str(quarter), '--extra', '2', '--separate', 'CE,FG', '--out', str(out)])
+    assert 'FG: variance' in capsys.readouterr().out
+    with pytest.raises(SystemExit, match='not enough to estimate'):
+        main(['augment', str(quarter), '--extra', '2', '--out', str(out)])
+
+
+def test_power_is_told_with_and_without_failures(capsys):
+    options = ['--replicates', '10', '--sigma', '40', '--effect', '60', '--loss', '400']
+    main(['power', '--design', 'quarter', *options, '--failure', '0.2', '--repeats', '200'])
+    text = capsys.readouterr().out
+    # The reference table: 320 runs, 26 parameters find 0.31425 sigma.
+    assert f'{0.3142541619790811 * 40:.4g}' in text
+    assert '1.0000 if no run fails' in text
+    assert 'Power with 20 % failing runs: 0.7' in text
+
+
+def test_hours_become_a_proposal(capsys):
+    options = ['--hours', '25', '--seconds-per-run', '10', '--run-episodes', '4']
+    main(['hours', *options, '--workers', '2'])
+    text = capsys.readouterr().out
+    assert text.startswith('Proposed:\nquarter: 32 cases x 2 replicates x 1000 episodes')
+    assert text.count('Instead:') == 3
+
+
+@pytest.mark.parametrize(
+    ('words', 'message'),
+    [
+        (['--generators', 'F=ABX'], "plan: generator F=ABX: 'X' is not a base factor"),
+        (['--factors', '13'], 'plan: 13 factors: expected 2 to 12'),
+        (['fold', '/nowhere/plan.csv', '--on', 'C'], 'plan: .*No such file'),
+        (['power', '--design', 'eighth', '--max-order', '3'], 'plan: 16 runs, 16 parameters'),
+        (['hours', '--hours', '0.001', '--seconds-per-run', '60'], 'plan: 0.001 h pay for'),
+    ],
+)
+def test_errors_are_one_line(words, message):
+    with pytest.raises(SystemExit, match=message):
+        main(words)
+
+
+def test_an_unknown_option_shows_the_usage(capsys):
+    with pytest.raises(SystemExit):
+        main(['--design', 'third'])
+    assert "invalid choice: 'third'" in capsys.readouterr().err
