@@ -1,0 +1,8 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The errors that users of campaigns and bags meet."""
+
+
+class BagError(Exception):
+    """A bag cannot be read or written; the text names the path and what was expected of it."""
