@@ -72,7 +72,7 @@ class SimNode(Node):
     def _on_reset(
         self, request: ResetEpisode.Request, response: ResetEpisode.Response
     ) -> ResetEpisode.Response:
-        """Put the robot at the seeded start of an episode, one period later than the last sample."""
+        """Put the robot at the seeded start of an episode, a period after the last sample."""
         listeners = dict(zip(request.topics, request.subscriptions, strict=True))
         response.message = unheard(self._publishers, listeners)
         response.success = not response.message

@@ -1,1 +1,7 @@
-"""What every rclpy node of the hexapod shares: parameters from a table, QoS, stamps, lock-step, spinning."""
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""What every rclpy node of the hexapod shares.
+
+Parameters from a table, quality of service, stamps, lock-step, coroutines, diagnostics, spinning.
+"""

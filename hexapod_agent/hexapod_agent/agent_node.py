@@ -1,0 +1,107 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Node `agent`: offers the action `train_run` and accepts one run at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from diagnostic_msgs.msg import DiagnosticStatus
+from hexapod_interfaces.action import TrainRun
+from hexapod_interfaces.msg import CpgCommand, EpisodeResult
+from hexapod_node.coroutines import CoroutineActionServer, sleep
+from hexapod_node.diagnostics import Diagnostics, Health
+from hexapod_node.parameters import Parameter, declare
+from hexapod_node.qos import LOCK_STEP
+from hexapod_node.spin import run
+from rclpy.action import CancelResponse, GoalResponse
+from rclpy.action.server import ServerGoalHandle
+from rclpy.node import Node
+
+from hexapod_agent.config import AgentConfig
+from hexapod_agent.graph_run import GraphRun
+from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.peers import Peers
+from hexapod_agent.training import Trainer
+
+PARAMETERS = (
+    Parameter('config', '', 'hyper-parameter file of runs that name none; empty: article.yaml'),
+    Parameter(
+        'timeout',
+        10.0,
+        'longest wait for a service, or for a topic to deliver its sample',
+        unit='s',
+        range=(0.1, 3600.0),
+    ),
+)
+
+MakeTrainer = Callable[[ObservationSpec, AgentConfig, int], Trainer]
+
+
+class AgentNode(Node):
+    """Observes the topics of a run's set, acts through `cpg/command` and learns meanwhile."""
+
+    def __init__(self, make_trainer: MakeTrainer = Trainer) -> None:
+        super().__init__('agent')
+        declare(self, PARAMETERS)
+        self.timeout_s = float(self.get_parameter('timeout').value)
+        self.command_publisher = self.create_publisher(CpgCommand, 'cpg/command', LOCK_STEP)
+        self.result_publisher = self.create_publisher(EpisodeResult, 'episode_result', LOCK_STEP)
+        self.peers = Peers(self, self.timeout_s)
+        self._make_trainer = make_trainer
+        self._run: GraphRun | None = None
+        self._reserved = False
+        self._last_error = ''
+        self._server = CoroutineActionServer(
+            self,
+            TrainRun,
+            'train_run',
+            self._train,
+            goal_callback=self._on_goal,
+            cancel_callback=lambda _: CancelResponse.ACCEPT,
+        )
+        Diagnostics(self, self._health)
+
+    def _on_goal(self, goal: TrainRun.Goal) -> GoalResponse:
+        """Accept a run unless one is under way."""
+        if self._reserved:
+            self.get_logger().warning(f'run {goal.run_id} refused: another run is under way')
+            return GoalResponse.REJECT
+        self._reserved = True
+        return GoalResponse.ACCEPT
+
+    async def _train(self, goal_handle: ServerGoalHandle) -> TrainRun.Result:
+        """Run one goal to its end; an error ends the run, not the node."""
+        goal = goal_handle.request
+        try:
+            spec = ObservationSpec(goal.observations)
+            config = AgentConfig.load(goal.config or self.get_parameter('config').value)
+            trainer = self._make_trainer(spec, config, goal.seed)
+            self._run = GraphRun(self, goal_handle, spec, config, trainer)
+            return await self._run.execute()
+        except Exception as error:
+            self._last_error = f'run {goal.run_id}: {error}'
+            self.get_logger().error(self._last_error)
+            if goal_handle.is_active:
+                goal_handle.abort()
+            return TrainRun.Result(message=str(error))
+        finally:
+            # Leave the callback that brought the last sample before its subscription goes.
+            await sleep(self, 0.0)
+            if self._run is not None:
+                self._run.destroy()
+            self._run = None
+            self._reserved = False
+
+    def _health(self) -> Health:
+        if self._run is not None:
+            return DiagnosticStatus.OK, 'training', self._run.progress()
+        if self._last_error:
+            return DiagnosticStatus.ERROR, self._last_error, {}
+        return DiagnosticStatus.OK, 'waiting for a run', {}
+
+
+def main(args: Sequence[str] | None = None) -> None:
+    """Run the node until a signal comes."""
+    run(AgentNode, args)

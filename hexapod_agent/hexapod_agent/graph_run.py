@@ -1,0 +1,236 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""One training run on the node graph: subscribe, reset, step in lock-step, record."""
+
+from __future__ import annotations
+
+import time
+from array import array
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import yaml
+from hexapod_cpg.mapping import command_from_action
+from hexapod_cpg.messages import command_to_message
+from hexapod_interfaces.action import TrainRun
+from hexapod_interfaces.msg import CpgCommand, EpisodeResult, StepOutcome
+from hexapod_node.coroutines import sleep
+from hexapod_node.lock_step import LockStep
+from hexapod_node.matching import unheard
+from hexapod_node.stamps import time_message
+from hexapod_sim.robot import CONTROL_PERIOD_NS
+from hexapod_sim.task import episode_seed
+from numpy.typing import NDArray
+
+from hexapod_agent.checkpoint import save
+from hexapod_agent.config import AgentConfig
+from hexapod_agent.messages import decode, message_class, outcome_from_message
+from hexapod_agent.observation import ACTION_SIZE, CHANNELS, ObservationSpec
+from hexapod_agent.peers import PeerError
+from hexapod_agent.provenance import provenance
+from hexapod_agent.training import Trainer
+
+if TYPE_CHECKING:
+    from rclpy.action.server import ServerGoalHandle
+
+    from hexapod_agent.agent_node import AgentNode
+
+_OUTCOME = 'step_outcome'
+_POLL_S = 0.02
+# What a sampled episode holds beside every sensor topic.
+_PROTOCOL_TOPICS = (_OUTCOME, 'odom', 'cpg/command', 'joint_trajectory', 'clock')
+_SENSOR_TOPICS = tuple(topic for channel in CHANNELS for topic in channel.topics)
+
+
+class GraphRun:
+    """A run of the action `train_run`, from its first subscription to its closed bag."""
+
+    def __init__(
+        self,
+        node: AgentNode,
+        goal_handle: ServerGoalHandle,
+        spec: ObservationSpec,
+        config: AgentConfig,
+        trainer: Trainer,
+    ) -> None:
+        self._node = node
+        self._goal_handle = goal_handle
+        self._goal: TrainRun.Goal = goal_handle.request
+        self._spec = spec
+        self._config = config
+        self._trainer = trainer
+        self._command = CpgCommand()
+        self._episode = 0
+        self._action = np.zeros(ACTION_SIZE, dtype=np.float32)
+        # The treatment: these topics and no other sensor.
+        topics = {
+            topic: message_class(channel.message_type)
+            for channel in spec.channels
+            for topic in channel.topics
+        }
+        self._lock_step = LockStep(
+            node, topics | {_OUTCOME: StepOutcome}, CONTROL_PERIOD_NS, node.timeout_s
+        )
+
+    def destroy(self) -> None:
+        """Unsubscribe from every topic of the run."""
+        self._lock_step.destroy()
+
+    def progress(self) -> dict[str, object]:
+        """Return what the diagnostics show."""
+        counts = vars(self._lock_step.counts)
+        return {'run_id': self._goal.run_id, 'episode': self._episode, **counts}
+
+    async def execute(self) -> TrainRun.Result:
+        """Train every episode of the goal, then close the bag and save the agent."""
+        peers, goal = self._node.peers, self._goal
+        await peers.configure('sim', 'task', asdict(self._config.task))
+        await peers.configure('cpg', 'cpg', asdict(self._config.cpg.hopf))
+        if goal.bag:
+            await peers.start_recording(
+                goal.run_id, goal.bag, self._recorded_topics(), self._metadata()
+            )
+        for self._episode in range(goal.episodes):
+            if self._goal_handle.is_cancel_requested:
+                self._goal_handle.canceled()
+                return self._result('canceled')
+            await self._run_episode()
+        checkpoint, bag = '', ''
+        if goal.bag:
+            checkpoint = f'{goal.bag}.pt'
+            save(checkpoint, self._trainer, with_replay=False)
+            bag = await peers.finish_recording(goal.episodes, {'checkpoint': checkpoint})
+        self._goal_handle.succeed()
+        return self._result('', checkpoint, bag)
+
+    async def _run_episode(self) -> None:
+        """Play one episode, and record all of it if it is a sampled one."""
+        peers, episode = self._node.peers, self._episode
+        every = self._goal.record_every
+        sampled = bool(self._goal.bag) and every > 0 and (episode + 1) % every == 0
+        if sampled:
+            await peers.record_episode(episode, enable=True)
+        self._lock_step.stop()
+        self._lock_step.counts.reset()
+        self._trainer.begin_episode(episode)
+        self._action = np.zeros(ACTION_SIZE, dtype=np.float32)
+        listeners = self._listeners(sampled)
+        await self._until_heard(listeners)
+        seed = episode_seed(self._goal.seed, episode)
+        start_ns = await peers.begin_episode(seed, listeners)
+        self._lock_step.start(start_ns)
+        last_ns = await self._step_until_end(start_ns)
+        if sampled:
+            await peers.record_episode(episode, enable=False, last_ns=last_ns)
+        self._report(last_ns)
+
+    async def _step_until_end(self, stamp_ns: int) -> int:
+        """Observe, act and learn once per period; return the stamp of the last one."""
+        trainer = self._trainer
+        while True:
+            messages = await self._lock_step.next_period()
+            outcome = outcome_from_message(messages[_OUTCOME])
+            observation = self._observe(messages)
+            if outcome.terminated or outcome.truncated:
+                trainer.end_episode(observation, outcome)
+                return stamp_ns
+            self._action = trainer.observe(observation, outcome)
+            self._publish_command(stamp_ns)
+            trainer.learn()  # while the pattern generator and the sim are at work
+            stamp_ns += CONTROL_PERIOD_NS
+
+    def _observe(self, messages: Mapping[str, Any]) -> NDArray[Any]:
+        readings: dict[str, NDArray[Any]] = {}
+        for channel in self._spec.channels:
+            if channel.topics:
+                readings.update(decode(channel, messages))
+        return self._spec.assemble(readings, self._action)
+
+    def _publish_command(self, stamp_ns: int) -> None:
+        command = command_from_action(self._action, ranges=self._config.cpg.ranges)
+        command_to_message(command, self._command)
+        self._command.header.stamp = time_message(stamp_ns)
+        self._node.command_publisher.publish(self._command)
+
+    def _listeners(self, sampled: bool) -> dict[str, int]:
+        """Return how many subscriptions each topic must have before the episode begins."""
+        resolve = self._node.resolve_topic_name
+        listeners = {resolve('joint_trajectory'): 1, resolve('cpg/command'): 1}
+        listeners |= dict.fromkeys(self._lock_step.topics, 1)
+        if self._goal.bag:
+            listeners[resolve('episode_result')] = 1
+        if sampled:
+            for topic in self._recorded_topics():
+                listeners[topic] = listeners.get(topic, 0) + 1
+        return listeners
+
+    async def _until_heard(self, listeners: Mapping[str, int]) -> None:
+        """Wait until the agent's own topics are matched."""
+        node = self._node
+        deadline = time.monotonic() + node.timeout_s
+        while reason := unheard([node.command_publisher, node.result_publisher], listeners):
+            if time.monotonic() > deadline:
+                raise PeerError(f'{reason} after {node.timeout_s:g} s, expected a running node')
+            await sleep(node, _POLL_S)
+
+    def _recorded_topics(self) -> list[str]:
+        return [self._node.resolve_topic_name(t) for t in (*_SENSOR_TOPICS, *_PROTOCOL_TOPICS)]
+
+    def _metadata(self) -> dict[str, str]:
+        """Return what the bag says of the run; the plan's own entries come with the goal."""
+        given = {entry.key: entry.value for entry in self._goal.metadata}
+        node = self._node
+        subscribed = node.get_subscriber_names_and_types_by_node(
+            node.get_name(), node.get_namespace()
+        )
+        return given | {
+            'observations': self._spec.letters,
+            'seed': str(self._goal.seed),
+            'episodes': str(self._goal.episodes),
+            'window': str(self._config.training.window),
+            'config': yaml.safe_dump(self._config.to_mapping(), sort_keys=False),
+            'subscriptions': '\n'.join(topic for topic, _ in subscribed),
+            **provenance(),
+        }
+
+    def _report(self, last_ns: int) -> None:
+        """Publish the episode's result and the action's feedback."""
+        summary = self._trainer.summary
+        result = EpisodeResult(
+            run_id=self._goal.run_id,
+            episode=self._episode,
+            steps=summary.steps,
+            episode_return=summary.episode_return,
+            average_return=summary.average_return,
+            term_names=list(summary.terms),
+            term_values=array('d', summary.terms.values()),
+            terminated=summary.terminated,
+            cause=summary.cause,
+            critic_loss=summary.critic_loss,
+            actor_loss=summary.actor_loss,
+            mean_q=summary.mean_q,
+            saturated_share=summary.saturated_share,
+            updates=summary.updates,
+            **vars(self._lock_step.counts),
+        )
+        result.header.stamp = time_message(last_ns)
+        self._node.result_publisher.publish(result)
+        self._goal_handle.publish_feedback(
+            TrainRun.Feedback(
+                episode=self._episode,
+                episode_return=summary.episode_return,
+                average_return=summary.average_return,
+            )
+        )
+
+    def _result(self, message: str, checkpoint: str = '', bag: str = '') -> TrainRun.Result:
+        return TrainRun.Result(
+            final_average_reward=self._trainer.summary.average_return,
+            episodes=self._episode + 1,
+            checkpoint=checkpoint,
+            bag=bag,
+            message=message,
+        )

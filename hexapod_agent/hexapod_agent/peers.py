@@ -1,0 +1,112 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The services of the other nodes of a worker, as the agent uses them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from diagnostic_msgs.msg import KeyValue
+from hexapod_interfaces.srv import (
+    FinishRecording,
+    RecordEpisode,
+    ResetEpisode,
+    StartRecording,
+)
+from hexapod_node.calls import call
+from hexapod_node.coroutines import sleep
+from hexapod_node.parameters import to_messages
+from hexapod_node.stamps import time_message, to_nanoseconds
+from rcl_interfaces.srv import SetParametersAtomically
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+
+_RETRY_S = 0.02
+
+
+class PeerError(RuntimeError):
+    """Another node of the worker refused; the text names it and gives its reason."""
+
+
+class Peers:
+    """Clients of `sim`, `cpg` and `recorder`, by relative names that can be remapped."""
+
+    def __init__(self, node: Node, timeout_s: float) -> None:
+        self._node = node
+        self._timeout_s = timeout_s
+        self._configure = {
+            peer: node.create_client(SetParametersAtomically, f'{peer}/set_parameters_atomically')
+            for peer in ('sim', 'cpg')
+        }
+        self._reset = {
+            peer: node.create_client(ResetEpisode, f'{peer}/reset') for peer in ('sim', 'cpg')
+        }
+        self._start = node.create_client(StartRecording, 'recorder/start')
+        self._episode = node.create_client(RecordEpisode, 'recorder/episode')
+        self._finish = node.create_client(FinishRecording, 'recorder/finish')
+
+    async def configure(self, peer: str, prefix: str, config: Mapping[str, Any]) -> None:
+        """Give `sim` or `cpg` the configuration of the run, as its parameters."""
+        request = SetParametersAtomically.Request(parameters=to_messages(prefix, config))
+        client = self._configure[peer]
+        response = await call(self._node, client, request, self._timeout_s)
+        if not response.result.successful:
+            raise PeerError(f'{client.service_name}: {response.result.reason}')
+
+    async def begin_episode(self, seed: int, subscriptions: Mapping[str, int]) -> int:
+        """Reset sim and pattern generator; return the stamp of the first period, ns."""
+        request = ResetEpisode.Request(
+            seed=seed,
+            topics=list(subscriptions),
+            subscriptions=list(subscriptions.values()),
+        )
+        response = await self._reset_when_matched('sim', request)
+        request.start = response.start
+        await self._reset_when_matched('cpg', request)
+        return to_nanoseconds(response.start)
+
+    async def start_recording(
+        self, run_id: str, bag: str, topics: Sequence[str], metadata: Mapping[str, str]
+    ) -> None:
+        """Open the run's bag."""
+        request = StartRecording.Request(
+            run_id=run_id, bag=bag, topics=list(topics), metadata=key_values(metadata)
+        )
+        await self._ask(self._start, request)
+
+    async def record_episode(self, episode: int, enable: bool, last_ns: int = 0) -> None:
+        """Begin or end recording every topic."""
+        request = RecordEpisode.Request(episode=episode, enable=enable, last=time_message(last_ns))
+        await self._ask(self._episode, request)
+
+    async def finish_recording(self, episodes: int, metadata: Mapping[str, str]) -> str:
+        """Close the run's bag and return where it is."""
+        request = FinishRecording.Request(episodes=episodes, metadata=key_values(metadata))
+        response = await self._ask(self._finish, request)
+        return str(response.bag)
+
+    async def _reset_when_matched(self, peer: str, request: ResetEpisode.Request) -> Any:
+        """Repeat the reset until the peer's topics are matched."""
+        deadline = time.monotonic() + self._timeout_s
+        while True:
+            response = await call(self._node, self._reset[peer], request, self._timeout_s)
+            if response.success:
+                return response
+            if time.monotonic() > deadline:
+                raise PeerError(f'{self._reset[peer].service_name}: {response.message}')
+            await sleep(self._node, _RETRY_S)
+
+    async def _ask(self, client: Any, request: Any) -> Any:
+        response = await call(self._node, client, request, self._timeout_s)
+        if not response.success:
+            raise PeerError(f'{client.service_name}: {response.message}')
+        return response
+
+
+def key_values(mapping: Mapping[str, str]) -> list[KeyValue]:
+    """Return a mapping as messages."""
+    return [KeyValue(key=key, value=value) for key, value in mapping.items()]

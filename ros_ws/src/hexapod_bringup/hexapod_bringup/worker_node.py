@@ -1,0 +1,25 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""A whole worker in one process: sim, cpg, agent and recorder, served by one executor."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from hexapod_agent.agent_node import AgentNode
+from hexapod_cpg.cpg_node import CpgNode
+from hexapod_doe.recorder_node import RecorderNode
+from hexapod_node.spin import run
+from hexapod_sim.sim_node import SimNode
+from rclpy.node import Node
+
+
+def make_worker() -> list[Node]:
+    """Make the nodes of a worker; they are wired by topics, as separate processes are."""
+    return [SimNode(), CpgNode(), RecorderNode(), AgentNode()]
+
+
+def main(args: Sequence[str] | None = None) -> None:
+    """Run the worker until a signal comes."""
+    run(make_worker, args)

@@ -1,0 +1,66 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Coroutines that are resumed by the event that they wait for.
+
+rclpy's own tasks poll: a coroutine that awaits a future is called again and again until it is
+done, which keeps a core busy. Here the future's done-callback resumes it, so waiting costs nothing
+and the coroutine goes on inside the very callback that brought the message.
+"""
+
+from __future__ import annotations
+
+import types
+from collections.abc import Coroutine, Generator
+from typing import Any
+
+from rclpy.action import ActionServer
+from rclpy.action.server import ServerGoalHandle
+from rclpy.node import Node
+from rclpy.task import Future
+
+
+@types.coroutine
+def until(future: Future) -> Generator[Future, None, Any]:
+    """Wait for a future and return its result, or raise its exception."""
+    if not future.done():
+        yield future
+    return future.result()
+
+
+def start(coroutine: Coroutine[Future, None, Any]) -> Future:
+    """Run a coroutine that waits with `until`; return the future of what it returns or raises."""
+    done = Future()
+
+    def resume(_: Future | None = None) -> None:
+        try:
+            awaited = coroutine.send(None)
+        except StopIteration as stop:
+            done.set_result(stop.value)
+        except Exception as error:
+            done.set_exception(error)
+        else:
+            awaited.add_done_callback(resume)
+
+    resume()
+    return done
+
+
+async def sleep(node: Node, seconds: float) -> None:
+    """Wait on the wall clock without blocking the executor."""
+    done = Future()
+    timer = node.create_timer(seconds, lambda: done.done() or done.set_result(None))
+    try:
+        await until(done)
+    finally:
+        node.destroy_timer(timer)
+
+
+class CoroutineActionServer(ActionServer):
+    """An action server whose execute callback is a coroutine that waits with `until`."""
+
+    def notify_execute(self, goal_handle: ServerGoalHandle, execute_callback: Any = None) -> None:
+        """Start the coroutine; the base class gets a callback that has its result at once."""
+        done = start((execute_callback or self._execute_callback)(goal_handle))
+        finish = super().notify_execute
+        done.add_done_callback(lambda future: finish(goal_handle, lambda _: future.result()))

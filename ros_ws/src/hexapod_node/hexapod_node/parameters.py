@@ -1,0 +1,163 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Declares a node's parameters from one table, which the README's tables are made of as well."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields
+from itertools import pairwise
+from typing import Any, Generic, TypeVar
+
+from rcl_interfaces.msg import (
+    FloatingPointRange,
+    IntegerRange,
+    ParameterDescriptor,
+    SetParametersResult,
+)
+from rcl_interfaces.msg import Parameter as ParameterMessage
+from rclpy.node import Node
+from rclpy.parameter import Parameter as RclpyParameter
+
+Value = bool | int | float | str
+Config = TypeVar('Config')
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of a node: what it is, in which unit, and what it may be."""
+
+    name: str
+    default: Value
+    description: str
+    unit: str = ''
+    range: tuple[float, float] | None = None
+    """Least and greatest value allowed."""
+    choices: tuple[str, ...] = ()
+    """The values allowed, for text."""
+    read_only: bool = True
+    """Set at start only; otherwise `ros2 param set` works while the node runs."""
+
+
+def declare(node: Node, table: Iterable[Parameter]) -> None:
+    """Declare each parameter of the table with its description, unit and limits.
+
+    Raises:
+        rclpy.exceptions.InvalidParameterValueException: a value given at start is not allowed.
+    """
+    table = tuple(table)
+    choices = {parameter.name: parameter.choices for parameter in table if parameter.choices}
+    if choices:
+        node.add_on_set_parameters_callback(lambda values: _check_choices(values, choices))
+    for parameter in table:
+        node.declare_parameter(parameter.name, parameter.default, descriptor(parameter))
+
+
+def descriptor(parameter: Parameter) -> ParameterDescriptor:
+    """Return what `ros2 param describe` prints."""
+    constraints = [f'unit: {parameter.unit}'] if parameter.unit else []
+    if parameter.choices:
+        constraints.append(f'one of: {", ".join(parameter.choices)}')
+    message = ParameterDescriptor(
+        description=parameter.description,
+        additional_constraints='; '.join(constraints),
+        read_only=parameter.read_only,
+    )
+    if parameter.range is not None:
+        low, high = parameter.range
+        if isinstance(parameter.default, float):
+            message.floating_point_range = [
+                FloatingPointRange(from_value=float(low), to_value=float(high), step=0.0)
+            ]
+        else:
+            message.integer_range = [IntegerRange(from_value=int(low), to_value=int(high), step=1)]
+    return message
+
+
+class ConfigParameters(Generic[Config]):
+    """A configuration dataclass as settable parameters `prefix.field` of a node.
+
+    Values that the dataclass refuses with a ValueError are refused with that text.
+    """
+
+    def __init__(self, node: Node, config: type[Config], prefix: str) -> None:
+        self._node = node
+        self._config = config
+        self._prefix = prefix
+        declare(node, config_table(config, prefix))
+        node.add_on_set_parameters_callback(self._check)
+
+    def get(self) -> Config:
+        """Return the configuration that the parameters say now."""
+        return self._config(**self._values())
+
+    def _values(self) -> dict[str, Any]:
+        parameters = self._node.get_parameters_by_prefix(self._prefix)
+        return {name: parameter.value for name, parameter in parameters.items()}
+
+    def _check(self, parameters: list[RclpyParameter]) -> SetParametersResult:
+        start = f'{self._prefix}.'
+        changed = {p.name[len(start) :]: p.value for p in parameters if p.name.startswith(start)}
+        try:
+            self._config(**(self._values() | changed))
+        except ValueError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+
+def config_table(config: type, prefix: str) -> tuple[Parameter, ...]:
+    """Return the parameters that a configuration's scalar fields make.
+
+    A field's docstring is the description; where it ends in brackets, they hold the unit.
+    """
+    docs = _field_docs(config)
+    table = []
+    for field in fields(config):
+        if isinstance(field.default, Value):
+            text, unit = _split_unit(docs.get(field.name, ''))
+            name = f'{prefix}.{field.name}'
+            table.append(Parameter(name, field.default, text, unit=unit, read_only=False))
+    return tuple(table)
+
+
+def _field_docs(config: type) -> dict[str, str]:
+    """Return the string that follows each field in the source of a dataclass."""
+    (definition,) = ast.parse(inspect.cleandoc(inspect.getsource(config))).body
+    assert isinstance(definition, ast.ClassDef)
+    docs = {}
+    for statement, following in pairwise(definition.body):
+        if isinstance(statement, ast.AnnAssign) and isinstance(following, ast.Expr):
+            value = following.value
+            if isinstance(value, ast.Constant) and isinstance(statement.target, ast.Name):
+                docs[statement.target.id] = ' '.join(str(value.value).split())
+    return docs
+
+
+def _split_unit(doc: str) -> tuple[str, str]:
+    found = re.search(r'\[([^\]]+)\]', doc)
+    if found is None:
+        return doc, ''
+    return (doc[: found.start()].rstrip() + doc[found.end() :]).rstrip('.'), found.group(1)
+
+
+def _check_choices(
+    parameters: list[RclpyParameter], choices: dict[str, tuple[str, ...]]
+) -> SetParametersResult:
+    for parameter in parameters:
+        allowed = choices.get(parameter.name)
+        if allowed is not None and parameter.value not in allowed:
+            reason = f"{parameter.name} '{parameter.value}': expected one of {', '.join(allowed)}"
+            return SetParametersResult(successful=False, reason=reason)
+    return SetParametersResult(successful=True)
+
+
+def to_messages(prefix: str, config: Mapping[str, Any]) -> list[ParameterMessage]:
+    """Return values as parameters `prefix.name`, for the service that sets them."""
+    return [
+        RclpyParameter(f'{prefix}.{name}', value=value).to_parameter_msg()
+        for name, value in config.items()
+    ]
