@@ -1,0 +1,186 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Deep deterministic policy gradient for a stack of agents, every gradient written out.
+
+Lillicrap et al. 2016, with the order of operations of MATLAB's DDPG agent: critic, actor, targets.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from hexapod_agent.hyperparameters import ActorConfig, CriticConfig
+from hexapod_agent.networks import Actor, Critic, initial_bounds
+from hexapod_agent.optimizer import ClippedAdam
+from hexapod_agent.parameters import ParameterStack
+from hexapod_agent.replay import Batch
+
+
+@dataclass(frozen=True)
+class UpdateStatistics:
+    """What one update saw, each of shape (agents,).
+
+    Attributes:
+        critic_loss: Mean squared temporal difference.
+        actor_loss: -mean Q of the policy's actions, with the terms that the config adds.
+        mean_q: Mean Q of the policy's actions.
+    """
+
+    critic_loss: Tensor
+    actor_loss: Tensor
+    mean_q: Tensor
+
+
+class Ddpg:
+    """Actor, critic, their targets and optimisers.
+
+    Attributes:
+        batch: Tensors to fill before `update`.
+        actor_parameters: Online actor.
+        critic_parameters: Online critic.
+
+    Args:
+        observation_size: Numbers of an observation.
+        action_size: Numbers of an action.
+        actor: The policy and its training.
+        critic: The action value and its training.
+        batch_size: Transitions per update.
+        target_smoothing: Share of the online network that moves into its target per update.
+        generator: Draws the initial weights.
+        agents: Independent agents that learn side by side.
+        dtype: Number format of everything.
+    """
+
+    def __init__(
+        self,
+        observation_size: int,
+        action_size: int,
+        actor: ActorConfig,
+        critic: CriticConfig,
+        batch_size: int,
+        target_smoothing: float,
+        generator: torch.Generator,
+        agents: int = 1,
+        dtype: torch.dtype = torch.float32,
+    ) -> None:
+        sizes = (observation_size, action_size)
+        self._actor_config = actor
+        self._smoothing = target_smoothing
+        self._single = agents == 1
+        self.batch = Batch.empty(agents, batch_size, *sizes, dtype)
+        self._batch = Batch(*(self._inner(tensor) for tensor in vars(self.batch).values()))
+
+        self.actor_parameters = ParameterStack(Actor.shapes(*sizes, actor.hidden), agents, dtype)
+        self.critic_parameters = ParameterStack(
+            Critic.shapes(*sizes, critic.hidden, critic.merge), agents, dtype
+        )
+        self._actor_target_parameters = _drawn_with_target(self.actor_parameters, generator)
+        self._critic_target_parameters = _drawn_with_target(self.critic_parameters, generator)
+        self._actor_optimizer = ClippedAdam(
+            self.actor_parameters, actor.learning_rate, actor.gradient_threshold
+        )
+        self._critic_optimizer = ClippedAdam(
+            self.critic_parameters, critic.learning_rate, critic.gradient_threshold
+        )
+
+        self._policy = Actor(self.actor_parameters, 1)
+        self._actor = Actor(
+            self.actor_parameters, batch_size, self._actor_optimizer.gradients, actor.l2
+        )
+        self._critic = Critic(
+            self.critic_parameters, batch_size, self._critic_optimizer.gradients, critic.l2
+        )
+        self._target_actor = Actor(self._actor_target_parameters, batch_size)
+        self._target_critic = Critic(self._critic_target_parameters, batch_size)
+
+    def _inner(self, tensor: Tensor) -> Tensor:
+        """Drop the leading dimension of a stack of one, as the layers expect."""
+        return tensor[0] if self._single else tensor
+
+    def act(self, observation: Tensor) -> Tensor:
+        """Actions (agents, action size) for observations (agents, observation size)."""
+        action = self._policy.forward(self._inner(observation.unsqueeze(1)))
+        return action.view(*observation.shape[:1], -1).clone()
+
+    def update(self) -> UpdateStatistics:
+        """Take one gradient step on `batch`: critic, actor, then both targets."""
+        critic_loss = self._update_critic()
+        actor_loss, mean_q = self._update_actor()
+        for target, online in (
+            (self._critic_target_parameters, self.critic_parameters),
+            (self._actor_target_parameters, self.actor_parameters),
+        ):
+            target.flat.lerp_(online.flat, self._smoothing)
+        return UpdateStatistics(critic_loss.view(-1), actor_loss.view(-1), mean_q.view(-1))
+
+    def _update_critic(self) -> Tensor:
+        """Move Q(s, a) towards y = r + bootstrap Q'(s', mu'(s'))."""
+        batch = self._batch
+        next_action = self._target_actor.forward(batch.next_observation)
+        target = self._target_critic.forward(batch.next_observation, next_action)
+        torch.addcmul(batch.reward, batch.bootstrap, target, out=target)
+        # L = mean (Q - y)², dL/dQ = 2 (Q - y) / batch
+        error = self._critic.forward(batch.observation, batch.action).sub_(target)
+        loss = torch.mean(error * error, dim=-2)
+        error.mul_(2.0 / error.shape[-2])
+        self._critic.backward(batch.observation, batch.action, error)
+        self._critic_optimizer.step()
+        return loss
+
+    def _update_actor(self) -> tuple[Tensor, Tensor]:
+        """Move mu(s) up the slope of Q(s, mu(s)) under the critic that was just updated."""
+        batch, config = self._batch, self._actor_config
+        action = self._actor.forward(batch.observation)
+        value = self._critic.forward(batch.observation, action)
+        mean_q = value.mean(dim=-2)
+        # L = -mean Q / n + c mean z², dL/dQ = -1 / (n batch), n = mean |Q| or 1
+        scale = value.abs().mean(dim=-2) if config.normalize_loss else torch.ones_like(mean_q)
+        loss = -mean_q / scale
+        count = action.shape[-2] * action.shape[-1]
+        if config.preactivation_penalty:
+            z = self._actor.preactivation
+            penalty = torch.linalg.vector_norm(z, dim=(-2, -1)).square() / count
+            loss = loss + config.preactivation_penalty * penalty.unsqueeze(-1)
+        value.copy_((-1.0 / (scale * value.shape[-2])).unsqueeze(-2).expand_as(value))
+        self._actor.backward(
+            batch.observation,
+            self._critic.action_gradient(value),
+            2.0 * config.preactivation_penalty / count,
+        )
+        self._actor_optimizer.step()
+        return loss, mean_q
+
+    def state_dict(self) -> dict[str, Any]:
+        """Networks, targets and optimisers."""
+        return {name: part.flat for name, part in self._stacks().items()} | {
+            'actor_optimizer': self._actor_optimizer.state_dict(),
+            'critic_optimizer': self._critic_optimizer.state_dict(),
+        }
+
+    def load_state_dict(self, state: dict[str, Any]) -> None:
+        """Take over what `state_dict` gave, of networks with the same layers."""
+        for name, part in self._stacks().items():
+            part.flat.copy_(state[name])
+        self._actor_optimizer.load_state_dict(state['actor_optimizer'])
+        self._critic_optimizer.load_state_dict(state['critic_optimizer'])
+
+    def _stacks(self) -> dict[str, ParameterStack]:
+        return {
+            'actor': self.actor_parameters,
+            'critic': self.critic_parameters,
+            'target_actor': self._actor_target_parameters,
+            'target_critic': self._critic_target_parameters,
+        }
+
+
+def _drawn_with_target(
+    parameters: ParameterStack, generator: torch.Generator
+) -> ParameterStack:
+    """Draw initial weights and make the target network that starts equal to them."""
+    parameters.draw(initial_bounds(parameters.shapes), generator)
+    target = parameters.like()
+    target.flat.copy_(parameters.flat)
+    return target

@@ -1,0 +1,108 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Hyper-parameters of the learner by section of article.yaml, which holds and explains their values.
+
+No torch here: the environment reads the same file as the learner.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+
+@dataclass(frozen=True)
+class ActorConfig:
+    """The policy and its training.
+
+    Attributes:
+        hidden: Units of the hidden layers.
+        learning_rate: Adam's step size.
+        l2: Factor of the L2 term in the gradient, weights only.
+        gradient_threshold: Largest L2 norm of an array's gradient.
+        preactivation_penalty: Weight c of the term c mean(z²) of the loss, z the output before tanh.
+        normalize_loss: Whether the loss's value term is divided by mean |Q| of the batch.
+    """
+
+    hidden: tuple[int, ...]
+    learning_rate: float
+    l2: float
+    gradient_threshold: float
+    preactivation_penalty: float
+    normalize_loss: bool
+
+
+@dataclass(frozen=True)
+class CriticConfig:
+    """The action value and its training.
+
+    Attributes:
+        hidden: Units of the observation branch; the action branch has as many as its last layer.
+        merge: How the branches meet.
+        learning_rate: Adam's step size.
+        l2: Factor of the L2 term in the gradient, weights only.
+        gradient_threshold: Largest L2 norm of an array's gradient.
+    """
+
+    hidden: tuple[int, ...]
+    merge: Literal['add', 'append']
+    learning_rate: float
+    l2: float
+    gradient_threshold: float
+
+
+@dataclass(frozen=True)
+class DdpgConfig:
+    """The update.
+
+    Attributes:
+        batch_size: Transitions per update.
+        buffer_size: Observations that the replay buffer keeps.
+        discount: Discount factor per step.
+        n_step: Rewards summed before the value of a later observation takes over.
+        target_smoothing: Share of the online network that moves into its target per update.
+        reward_scale: Factor of the reward as the critic learns it.
+    """
+
+    batch_size: int
+    buffer_size: int
+    discount: float
+    n_step: int
+    target_smoothing: float
+    reward_scale: float
+
+
+@dataclass(frozen=True)
+class NoiseConfig:
+    """Ornstein-Uhlenbeck noise; MATLAB's names in brackets.
+
+    Attributes:
+        attraction: Pull towards the mean [MeanAttractionConstant], 1/s.
+        sigma: Standard deviation of the drive [StandardDeviation], 1/sqrt(s).
+        mean: Value that the noise is pulled to [Mean].
+        decay: Share of sigma lost per step [StandardDeviationDecayRate].
+        sigma_min: Least sigma [StandardDeviationMin].
+    """
+
+    attraction: float
+    sigma: float
+    mean: float
+    decay: float
+    sigma_min: float
+
+
+@dataclass(frozen=True)
+class TrainingConfig:
+    """The run around the updates.
+
+    Attributes:
+        episodes: Episodes of a run.
+        window: Last returns that the final average reward is the mean of.
+        checkpoint_every: Episodes between two checkpoints.
+        matmul_precision: 'highest' keeps torch's default product of float32 matrices; 'medium'
+            lets it take the machine's fastest, which may round the factors to bfloat16.
+    """
+
+    episodes: int
+    window: int
+    checkpoint_every: int
+    matmul_precision: Literal['highest', 'medium']

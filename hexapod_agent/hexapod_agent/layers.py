@@ -1,0 +1,78 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Layers that the networks are made of, forward and backward over preallocated buffers.
+
+Every tensor has shape (agents, batch, size), or (batch, size) in a stack of one agent, where a
+plain matrix product is the faster call.
+"""
+
+import torch
+from torch import Tensor
+
+from hexapod_agent.parameters import ParameterStack
+
+
+class Dense:
+    """Affine layer y = x Wᵀ + b with buffers for its output and the gradient of its input.
+
+    Args:
+        parameters: Stack that holds '<name>.weight' and '<name>.bias'.
+        gradients: Stack of the same layout that `backward` fills; None where it is never called.
+        name: The layer's name.
+        batch: Rows of x.
+        l2: Factor of the L2 term in the gradient of the weight.
+    """
+
+    def __init__(
+        self, parameters: ParameterStack, gradients: ParameterStack | None, name: str, batch: int,
+        l2: float = 0.0,
+    ) -> None:  # fmt: skip
+        self.weight = parameters.weight(f'{name}.weight')
+        self.bias = parameters.bias(f'{name}.bias')
+        self._transposed = self.weight.mT
+        self._l2 = l2
+        single = parameters.agents == 1
+        self._product = torch.mm if single else torch.bmm
+        self._add_product = torch.addmm if single else torch.baddbmm
+        outputs, inputs = self.weight.shape[-2:]
+        leading = () if single else (parameters.agents,)
+        self.output = self.weight.new_empty(*leading, batch, outputs)
+        if gradients is not None:
+            self._weight_gradient = gradients.weight(f'{name}.weight')
+            self._bias_gradient = gradients.bias(f'{name}.bias')
+            self._input_gradient = self.weight.new_empty(*leading, batch, inputs)
+            self._keep_bias_dim = not single
+
+    def forward(self, x: Tensor, out: Tensor | None = None) -> Tensor:
+        """Compute y into `out`, or into the layer's own buffer."""
+        return self._add_product(
+            self.bias, x, self._transposed, out=self.output if out is None else out
+        )
+
+    def add_to(self, y: Tensor, x: Tensor) -> Tensor:
+        """Add x Wᵀ + b to y in place."""
+        return self._add_product(y, x, self._transposed, out=y).add_(self.bias)
+
+    def backward(self, x: Tensor, y_gradient: Tensor) -> None:
+        """Write the gradients of weight and bias: dW = dyᵀ x + l2 W, db = sum of dy."""
+        self._add_product(
+            self.weight, y_gradient.mT, x, beta=self._l2, out=self._weight_gradient
+        )
+        torch.sum(y_gradient, dim=-2, keepdim=self._keep_bias_dim, out=self._bias_gradient)
+
+    def backward_input(self, y_gradient: Tensor) -> Tensor:
+        """Gradient of the input, dx = dy W, in the layer's buffer."""
+        return self._product(y_gradient, self.weight, out=self._input_gradient)
+
+
+def relu_backward(gradient: Tensor, activation: Tensor) -> Tensor:
+    """Zero the gradient, in place, where the unit was off."""
+    return torch.ops.aten.threshold_backward.grad_input(
+        gradient, activation, 0.0, grad_input=gradient
+    )
+
+
+def layer_shapes(name: str, inputs: int, outputs: int) -> dict[str, tuple[int, ...]]:
+    """Names and shapes of a layer's two arrays."""
+    return {f'{name}.weight': (outputs, inputs), f'{name}.bias': (outputs,)}

@@ -1,0 +1,61 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Storage of a network's parameters for a stack of agents: one flat tensor with a view per array.
+
+Optimiser, gradient norms and target smoothing work on the flat tensor, the layers on the views.
+"""
+
+import math
+from collections.abc import Mapping
+
+import torch
+from torch import Tensor
+
+_ALIGNMENT = 16  # arrays start at multiples of 16 numbers, a cache line of float32
+
+
+class ParameterStack:
+    """All arrays of one network for `agents` agents.
+
+    Attributes:
+        flat: Tensor (agents, P). Numbers between two arrays are padding, always 0.
+        arrays: Views (agents, *shape) by name; two-dimensional shapes (out, in) are weights.
+    """
+
+    def __init__(
+        self, shapes: Mapping[str, tuple[int, ...]], agents: int = 1,
+        dtype: torch.dtype = torch.float32,
+    ) -> None:  # fmt: skip
+        self.shapes = dict(shapes)
+        self.agents = agents
+        offsets = {}
+        size = 0
+        for name, shape in self.shapes.items():
+            offsets[name] = size
+            size += -(-math.prod(shape) // _ALIGNMENT) * _ALIGNMENT
+        self.flat = torch.zeros(agents, size, dtype=dtype)
+        self.arrays = {
+            name: self.flat[:, offset : offset + math.prod(shape)].unflatten(1, shape)
+            for (name, shape), offset in zip(self.shapes.items(), offsets.values(), strict=True)
+        }
+
+    def like(self) -> 'ParameterStack':
+        """Make a stack of the same layout, filled with zeros: gradients, or a target network."""
+        return ParameterStack(self.shapes, self.agents, self.flat.dtype)
+
+    def weight(self, name: str) -> Tensor:
+        """View of a weight (agents, out, in); (out, in) for a stack of one."""
+        array = self.arrays[name]
+        return array[0] if self.agents == 1 else array
+
+    def bias(self, name: str) -> Tensor:
+        """View of a bias (agents, 1, out), broadcast over a batch; (out,) for a stack of one."""
+        array = self.arrays[name]
+        return array[0] if self.agents == 1 else array.unsqueeze(1)
+
+    def draw(self, bounds: Mapping[str, float], generator: torch.Generator) -> None:
+        """Draw every array from U(-bound, bound), agent by agent, in the order of the layout."""
+        for agent in range(self.agents):
+            for name, array in self.arrays.items():
+                array[agent].uniform_(-bounds[name], bounds[name], generator=generator)

@@ -1,0 +1,179 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""One training run as a state machine that an environment loop and a ROS node drive alike.
+
+Each control period: `observe`, send the action, `learn`. The result depends on the seed alone,
+not on who drives or how long anything takes.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+import torch
+from hexapod_sim.robot import CONTROL_PERIOD_NS
+from hexapod_sim.task import Outcome
+from numpy.typing import NDArray
+
+from hexapod_agent.config import AgentConfig
+from hexapod_agent.ddpg import Ddpg
+from hexapod_agent.noise import OrnsteinUhlenbeckNoise
+from hexapod_agent.observation import ACTION_SIZE, ObservationSpec
+from hexapod_agent.replay import ReplayBuffer
+from hexapod_agent.summary import EpisodeRecord, EpisodeSummary
+
+
+class TrainingDivergedError(RuntimeError):
+    """An observation, a reward or a loss is no longer a finite number."""
+
+
+class Trainer:
+    """Learner, replay buffer, exploration noise and bookkeeping of one run.
+
+    Attributes:
+        spec: What the agent observes.
+        config: The run's configuration.
+        seed: Seed of everything random.
+        agent: Networks and their update.
+        episode: Episodes that are complete; a checkpoint is taken between two.
+        returns: Return of each complete episode.
+        summary: The last complete episode, None before the first.
+    """
+
+    def __init__(self, spec: ObservationSpec, config: AgentConfig, seed: int) -> None:
+        self.spec, self.config, self.seed = spec, config, seed
+        # One thread: a sum split over threads is not the same to the last bit.
+        torch.set_num_threads(1)
+        torch.set_float32_matmul_precision(config.training.matmul_precision)
+        init, noise, replay = np.random.SeedSequence(seed).spawn(3)
+        self._replay_generator = np.random.default_rng(replay)
+        self._noise_generator = np.random.default_rng(noise)
+        ddpg = config.ddpg
+        self.agent = Ddpg(
+            spec.size, ACTION_SIZE, config.actor, config.critic, ddpg.batch_size,
+            ddpg.target_smoothing, _torch_generator(init),
+        )  # fmt: skip
+        self._replay = ReplayBuffer(
+            ddpg.buffer_size, spec.size, ACTION_SIZE, ddpg.discount, ddpg.n_step
+        )
+        self._noise = OrnsteinUhlenbeckNoise(
+            config.noise, ACTION_SIZE, CONTROL_PERIOD_NS * 1e-9, self._noise_generator
+        )
+        self.episode = 0
+        self.returns: list[float] = []
+        self.summary: EpisodeSummary | None = None
+        self._record: EpisodeRecord | None = None
+        self._action: NDArray[np.float32] | None = None
+        self._step = 0
+
+    @property
+    def average_return(self) -> float:
+        """Mean of the last `window` returns: at the end, the final average reward."""
+        window = self.returns[-self.config.training.window :]
+        return float(np.mean(window)) if window else math.nan
+
+    def begin_episode(self, episode: int) -> None:
+        """Start episode number `episode`, dropping one that was left unfinished.
+
+        Raises:
+            ValueError: It is not the next episode of this run.
+        """
+        if episode != self.episode:
+            raise ValueError(f'episode {episode} cannot begin, expected episode {self.episode}')
+        self._record = EpisodeRecord(episode)
+        self._noise.reset()
+        self._action = None
+
+    def observe(
+        self, observation: NDArray[np.float32], outcome: Outcome
+    ) -> NDArray[np.float32]:
+        """Store the step that ends here, and choose the next action.
+
+        Args:
+            observation: Vector (spec.size,).
+            outcome: What the step earned; at the start of an episode, step 0.
+
+        Returns:
+            Action (30,) with exploration noise, within +-1.
+        """
+        self._store(observation, outcome)
+        output = self.agent.act(torch.from_numpy(observation).unsqueeze(0))[0].numpy()
+        self._record.add_output(output)
+        action = (output + self._noise.sample()).clip(-1.0, 1.0).astype(np.float32)
+        self._action = action
+        return action
+
+    def learn(self) -> None:
+        """Take one gradient step, once the buffer holds a batch."""
+        if len(self._replay) < self.config.ddpg.batch_size:
+            return
+        self._replay.sample(self._replay_generator, self.agent.batch)
+        statistics = self.agent.update()
+        values = {name: float(value) for name, value in vars(statistics).items()}
+        for name, value in values.items():
+            if not math.isfinite(value):
+                raise self._diverged(f'the {name} of an update is {value}')
+        self._record.add_update(**values)
+
+    def end_episode(self, observation: NDArray[np.float32], outcome: Outcome) -> EpisodeSummary:
+        """Store the last step and close the episode."""
+        self._store(observation, outcome)
+        self.returns.append(self._record.episode_return)
+        self.summary = self._record.summarize(outcome, self.average_return)
+        self.episode += 1
+        self._record = None
+        return self.summary
+
+    def _store(self, observation: NDArray[np.float32], outcome: Outcome) -> None:
+        """Add the transition that ends in `observation`, or begin an episode with it."""
+        self._step = outcome.step
+        if not np.isfinite(observation).all():
+            index = int(np.flatnonzero(~np.isfinite(observation))[0])
+            raise self._diverged(f'{self.spec.locate(index)} is {observation[index]}')
+        if not math.isfinite(outcome.reward):
+            raise self._diverged(f'the reward is {outcome.reward}')
+        if self._action is None:
+            self._replay.begin(observation)
+            return
+        reward = outcome.reward * self.config.ddpg.reward_scale
+        self._replay.add(self._action, reward, observation, outcome.terminated)
+        self._record.add_outcome(outcome)
+
+    def _diverged(self, what: str) -> TrainingDivergedError:
+        return TrainingDivergedError(
+            f'{what}, expected a finite number (step {self._step} of episode {self.episode}, '
+            f'seed {self.seed})'
+        )
+
+    def state_dict(self, with_replay: bool) -> dict[str, Any]:
+        """Everything that changes during a run, between two episodes.
+
+        Args:
+            with_replay: Whether the replay buffer is part of it; without, a run cannot go on.
+        """
+        state = {
+            'agent': self.agent.state_dict(),
+            'replay_generator': self._replay_generator.bit_generator.state,
+            'noise_generator': self._noise_generator.bit_generator.state,
+            'noise_sigma': self._noise.sigma,
+            'episode': self.episode,
+            'returns': list(self.returns),
+        }
+        return state | ({'replay': self._replay.state()} if with_replay else {})
+
+    def load_state_dict(self, state: dict[str, Any]) -> None:
+        """Take over what `state_dict` gave, of a run with the same configuration."""
+        self.agent.load_state_dict(state['agent'])
+        self._replay_generator.bit_generator.state = state['replay_generator']
+        self._noise_generator.bit_generator.state = state['noise_generator']
+        self._noise.sigma = state['noise_sigma']
+        self.episode = state['episode']
+        self.returns = list(state['returns'])
+        if 'replay' in state:
+            self._replay.restore(state['replay'])
+
+
+def _torch_generator(sequence: np.random.SeedSequence) -> torch.Generator:
+    """Seed a torch generator from a stream of numpy's."""
+    return torch.Generator().manual_seed(int(sequence.generate_state(1, np.uint64)[0]))

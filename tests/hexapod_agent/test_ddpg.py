@@ -1,0 +1,177 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""One update is the textbook's, computed here by autograd; the switches do what they name."""
+
+import pytest
+import torch
+from hexapod_agent.ddpg import Ddpg
+from hexapod_agent.hyperparameters import ActorConfig, CriticConfig
+from hexapod_agent.networks import Actor, Critic
+from hexapod_agent.parameters import ParameterStack
+
+SIZES = (5, 3)
+BATCH = 16
+
+
+def make(agents: int = 1, seed: int = 0, batch: int = BATCH, rate: float = 1e-2, **actor) -> Ddpg:
+    values = {
+        'hidden': (20, 10), 'learning_rate': rate, 'l2': 0.0, 'gradient_threshold': 1e9,
+        'preactivation_penalty': 0.0, 'normalize_loss': False,
+    }  # fmt: skip
+    return Ddpg(
+        *SIZES,
+        ActorConfig(**values | actor),
+        CriticConfig((20, 10), 'add', rate, 0.0, 1e9),
+        batch,
+        target_smoothing=0.1,
+        generator=torch.Generator().manual_seed(seed),
+        agents=agents,
+        dtype=torch.float64,
+    )
+
+
+def fill(agent: Ddpg, seed: int = 0) -> None:
+    generator = torch.Generator().manual_seed(seed)
+    for tensor in vars(agent.batch).values():
+        tensor.uniform_(-1, 1, generator=generator)
+    # Larger weights than the initial ones, so that no term of the update is negligible.
+    for parameters in (agent.actor_parameters, agent.critic_parameters):
+        for name, array in parameters.arrays.items():
+            if name.startswith('output'):
+                array.uniform_(-0.5, 0.5, generator=generator)
+
+
+def forward(network: type, parameters: ParameterStack, *inputs: torch.Tensor) -> torch.Tensor:
+    """Differentiable forward pass, written once more for the reference."""
+    arrays = parameters
+    x = inputs[0]
+    if network is Actor:
+        for layer in ('hidden0', 'hidden1'):
+            x = (x @ arrays[f'{layer}.weight'].T + arrays[f'{layer}.bias']).relu()
+        return x @ arrays['output.weight'].T + arrays['output.bias']
+    x = (x @ arrays['observation0.weight'].T + arrays['observation0.bias']).relu()
+    x = x @ arrays['observation1.weight'].T + arrays['observation1.bias']
+    x = (x + inputs[1] @ arrays['action.weight'].T + arrays['action.bias']).relu()
+    return x @ arrays['output.weight'].T + arrays['output.bias']
+
+
+def leaves(parameters: ParameterStack) -> dict[str, torch.Tensor]:
+    return {name: a[0].clone().requires_grad_() for name, a in parameters.arrays.items()}
+
+
+def adam(arrays: dict[str, torch.Tensor], loss: torch.Tensor) -> None:
+    optimizer = torch.optim.Adam(arrays.values(), lr=1e-2)
+    loss.backward()
+    optimizer.step()
+
+
+@pytest.mark.parametrize(('penalty', 'normalize'), [(0.0, False), (0.02, True)])
+def test_update_is_that_of_autograd(penalty, normalize):
+    agent = make(preactivation_penalty=penalty, normalize_loss=normalize)
+    fill(agent)
+    batch = type(agent.batch)(*(tensor[0].clone() for tensor in vars(agent.batch).values()))
+    actor, critic = leaves(agent.actor_parameters), leaves(agent.critic_parameters)
+    # The targets still have the initial weights; take them from the state.
+    state = {name: value.clone() for name, value in agent.state_dict().items() if 'target' in name}
+    targets = {}
+    for name, online in (('actor', agent.actor_parameters), ('critic', agent.critic_parameters)):
+        stack = online.like()
+        stack.flat.copy_(state[f'target_{name}'])
+        targets[name] = {key: array[0] for key, array in stack.arrays.items()}
+
+    statistics = agent.update()
+
+    next_action = forward(Actor, targets['actor'], batch.next_observation).tanh()
+    target = batch.reward + batch.bootstrap * forward(
+        Critic, targets['critic'], batch.next_observation, next_action
+    )
+    value = forward(Critic, critic, batch.observation, batch.action)
+    critic_loss = torch.nn.functional.mse_loss(value, target)
+    adam(critic, critic_loss)
+    z = forward(Actor, actor, batch.observation)
+    value = forward(Critic, {k: a.detach() for k, a in critic.items()}, batch.observation, z.tanh())
+    scale = value.detach().abs().mean() if normalize else 1.0
+    actor_loss = -value.mean() / scale + penalty * (z * z).mean()
+    adam(actor, actor_loss)
+
+    assert statistics.critic_loss.item() == pytest.approx(critic_loss.item())
+    assert statistics.actor_loss.item() == pytest.approx(actor_loss.item())
+    assert statistics.mean_q.item() == pytest.approx(value.mean().item())
+    for online, expected in ((agent.actor_parameters, actor), (agent.critic_parameters, critic)):
+        for name, array in online.arrays.items():
+            torch.testing.assert_close(array[0], expected[name].detach(), rtol=1e-9, atol=1e-12)
+    moved = state['target_critic'] + 0.1 * (agent.critic_parameters.flat - state['target_critic'])
+    torch.testing.assert_close(agent.state_dict()['target_critic'], moved)
+
+
+def test_agents_of_a_stack_do_not_touch_one_another():
+    """The first agent learns the same whatever the second one sees."""
+    stacks = []
+    for seed in (1, 2):
+        agent = make(agents=2)
+        fill(agent)
+        for tensor in vars(agent.batch).values():
+            tensor[1].uniform_(-1, 1, generator=torch.Generator().manual_seed(seed))
+        for _ in range(3):
+            agent.update()
+        stacks.append(agent)
+    first, second = stacks
+    assert torch.equal(first.actor_parameters.flat[0], second.actor_parameters.flat[0])
+    assert not torch.equal(first.actor_parameters.flat[1], second.actor_parameters.flat[1])
+
+
+def test_a_stack_learns_what_single_agents_learn():
+    stack, single = make(agents=2), make()
+    fill(stack)
+    for name, part in single.state_dict().items():
+        if not name.endswith('optimizer'):
+            part.copy_(stack.state_dict()[name][:1])
+    for part, whole in zip(vars(single.batch).values(), vars(stack.batch).values(), strict=True):
+        part.copy_(whole[:1])
+    for _ in range(3):
+        stack.update()
+        single.update()
+    torch.testing.assert_close(stack.actor_parameters.flat[:1], single.actor_parameters.flat)
+
+
+def test_preactivation_penalty_keeps_actions_off_the_bounds():
+    """A critic that always wants more drives an unpenalised actor to the bound."""
+    outputs = {}
+    for penalty in (0.0, 0.3):
+        agent = make(preactivation_penalty=penalty)
+        fill(agent)
+        agent.batch.bootstrap.zero_()
+        generator = torch.Generator().manual_seed(1)
+        for _ in range(1500):
+            agent.batch.action.uniform_(-1, 1, generator=generator)
+            agent.batch.reward.copy_(agent.batch.action.sum(dim=-1, keepdim=True))
+            agent.update()
+        outputs[penalty] = agent.act(agent.batch.observation[:, 0]).abs().mean().item()
+    assert outputs[0.0] > 0.99
+    assert outputs[0.3] < 0.95
+
+
+def test_learns_the_best_action_of_each_state():
+    """One-step problem: reward -|a - s|², so the best action is the state's first numbers."""
+    agent = make(batch=64, rate=2e-3)
+    generator = torch.Generator().manual_seed(0)
+    agent.batch.bootstrap.zero_()
+    for _ in range(3000):
+        agent.batch.observation.uniform_(-0.8, 0.8, generator=generator)
+        agent.batch.action.uniform_(-1, 1, generator=generator)
+        error = agent.batch.action - agent.batch.observation[..., :3]
+        agent.batch.reward.copy_(-(error * error).sum(dim=-1, keepdim=True))
+        agent.update()
+    error = torch.cat(
+        [agent.act(observation[None]) - observation[:3] for observation in agent.batch.observation[0]]
+    )
+    # A constant action would miss by 0.46, the standard deviation of U(-0.8, 0.8).
+    assert error.square().mean().sqrt() < 0.15
+
+
+def test_same_seed_same_weights():
+    first, second, other = make(seed=3), make(seed=3), make(seed=4)
+    assert torch.equal(first.actor_parameters.flat, second.actor_parameters.flat)
+    assert torch.equal(first.critic_parameters.flat, second.critic_parameters.flat)
+    assert not torch.equal(first.actor_parameters.flat, other.actor_parameters.flat)

@@ -1,0 +1,54 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Clipping works on each array of each agent; Adam's first steps are those of its formula."""
+
+import pytest
+import torch
+from hexapod_agent.optimizer import ClippedAdam
+from hexapod_agent.parameters import ParameterStack
+
+
+def test_each_array_is_clipped_to_the_threshold_alone():
+    parameters = ParameterStack({'a.weight': (2, 2), 'b.bias': (3,)}, agents=2)
+    optimizer = ClippedAdam(parameters, 1e-3, threshold=1.0)
+    gradients = optimizer.gradients.arrays
+    gradients['a.weight'][0] = torch.tensor([[3.0, 0.0], [0.0, 4.0]])  # norm 5
+    gradients['a.weight'][1] = torch.tensor([[0.3, 0.0], [0.0, 0.4]])  # norm 0.5, stays
+    gradients['b.bias'][0] = torch.tensor([0.0, 2.0, 0.0])
+    optimizer.step()
+    torch.testing.assert_close(gradients['a.weight'][0], torch.tensor([[0.6, 0], [0, 0.8]]))
+    torch.testing.assert_close(gradients['a.weight'][1], torch.tensor([[0.3, 0], [0, 0.4]]))
+    torch.testing.assert_close(gradients['b.bias'][0], torch.tensor([0.0, 1.0, 0.0]))
+
+
+def test_two_steps_follow_the_formula():
+    parameters = ParameterStack({'a.bias': (1,)}, dtype=torch.float64)
+    optimizer = ClippedAdam(parameters, 0.1, threshold=10.0)
+    optimizer.gradients.arrays['a.bias'].fill_(2.0)
+    optimizer.step()
+    # m = 0.1 g, v = 0.001 g², corrected to g and g²: the step is -0.1 g / |g|.
+    assert parameters.arrays['a.bias'].item() == pytest.approx(-0.1, rel=1e-7)
+    optimizer.gradients.arrays['a.bias'].fill_(-1.0)
+    optimizer.step()
+    # m = 0.9 0.2 - 0.1 = 0.08, over 1 - 0.9² = 0.19; v = 0.999 0.004 + 0.001 = 0.004996, over
+    # 1 - 0.999² = 0.001999: the step is -0.1 0.421053 / sqrt(2.499250) = -0.0266337.
+    assert parameters.arrays['a.bias'].item() == pytest.approx(-0.1266337, abs=1e-7)
+
+
+def test_state_carries_moments_and_step_count():
+    def run(steps: int, optimizer: ClippedAdam) -> None:
+        for step in range(steps):
+            optimizer.gradients.flat.fill_(0.1 * step - 0.3)
+            optimizer.step()
+
+    parameters = ParameterStack({'a.bias': (4,)})
+    optimizer = ClippedAdam(parameters, 0.1, 1.0)
+    run(5, optimizer)
+    twin_parameters = ParameterStack({'a.bias': (4,)})
+    twin_parameters.flat.copy_(parameters.flat)
+    twin = ClippedAdam(twin_parameters, 0.1, 1.0)
+    twin.load_state_dict(optimizer.state_dict())
+    run(5, optimizer)
+    run(5, twin)
+    assert torch.equal(parameters.flat, twin_parameters.flat)
