@@ -17,7 +17,7 @@ rounding: each is multiplied as a column of its own, so a fleet repeats single r
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from types import MappingProxyType
 
 import numpy as np
@@ -65,7 +65,7 @@ class HopfConfig:
     gait: str = 'tripod'
     """Key of ``GAITS``."""
     swing_stance: bool = False
-    """Let swing (y < 0) and stance take the shares of the cycle that the gait's duty factor says."""
+    """Let swing (y < 0) and stance take the gait's shares of the cycle, instead of half each."""
     sigmoid_gain: float = 50.0
     """Steepness a of the change between swing and stance frequency."""
     start_phase: float = np.pi / 2
@@ -156,10 +156,14 @@ def _flow(
         flat[..., 6:78:13] -= angle
         flat[..., 72::13] += angle
 
+    linear_times, damping_times = (_times(m, linear.ndim > 2) for m in (linear, damping))
+
     def flow(state: np.ndarray) -> np.ndarray:
-        cubic = damping @ (state * state)
+        cubic = damping_times(state * state)
         cubic *= state
-        return np.subtract(linear @ state, cubic, out=cubic)
+        increment = linear_times(state)
+        increment -= cubic
+        return increment
 
     def swing_stance_flow(state: np.ndarray) -> np.ndarray:
         x, y = state[..., :_LEGS, :], state[..., _LEGS:, :]
@@ -167,6 +171,15 @@ def _flow(
         return flow(state) + np.concatenate((-turn * y, turn * x), axis=-2)
 
     return swing_stance_flow if config.swing_stance else flow
+
+
+def _times(matrix: np.ndarray, batched: bool) -> Callable[[np.ndarray], np.ndarray]:
+    """Return the product of a matrix and columns (..., 12, 1).
+
+    For a single robot `dot` does what `matmul` does for each robot of a batch, to the last bit,
+    at a third of its overhead.
+    """
+    return partial(np.matmul, matrix) if batched else matrix.dot
 
 
 def _speed_ratio(y: np.ndarray, config: HopfConfig) -> np.ndarray:

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import mujoco
@@ -39,7 +40,7 @@ def locate_blocks(model: mujoco.MjModel) -> dict[str, slice]:
     blocks = {}
     for block, names in _BLOCKS.items():
         spans = [(int(s.adr[0]), int(s.adr[0] + s.dim[0])) for s in map(model.sensor, names)]
-        if any(left[1] != right[0] for left, right in zip(spans, spans[1:], strict=False)):
+        if any(left[1] != right[0] for left, right in pairwise(spans)):
             raise ValueError(f'sensors of block {block!r}: expected them in a row in the model')
         blocks[block] = slice(spans[0][0], spans[-1][1])
     return blocks

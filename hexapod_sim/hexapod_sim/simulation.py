@@ -76,6 +76,7 @@ class Simulation:
             ValueError: The targets have another shape or are not finite.
             SimulationDivergedError: The state left the meaningful range.
         """
+        targets = np.asarray(targets, dtype=np.float64)
         _check_targets(targets)
         # Position and velocity stages of the first step were computed by the last mj_forward.
         # Sensors are read once per period, so only the closing mj_forward evaluates them.

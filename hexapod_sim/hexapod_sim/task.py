@@ -132,7 +132,7 @@ class LineTask:
 
     @property
     def line_y(self) -> float:
-        """Where the goal line runs [m]; may be moved during an episode."""
+        """Where the goal line runs [m]; may be moved until the next reset puts it back."""
         return self._line_y
 
     @line_y.setter
@@ -149,8 +149,8 @@ class LineTask:
         """Start an episode: the robot stands beside the line, its offset drawn from the seed."""
         limit = self.config.start_offset
         offset = np.random.default_rng(seed).uniform(-limit, limit)
-        self.simulation.reset(self._line_y + offset)
-        self.simulation.set_goal_line(self._line_y)
+        self.simulation.reset(self.config.line_y + offset)
+        self.line_y = self.config.line_y
         self._step = 0
         self._x = 0.0
         self._over = False
