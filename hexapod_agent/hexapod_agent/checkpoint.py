@@ -8,8 +8,6 @@ The file is a torch archive of tensors, numbers and text, and is read without ru
 
 import os
 import pickle
-import tempfile
-import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -43,15 +41,12 @@ def save(path: str | Path, trainer: Trainer, with_replay: bool) -> None:
         'state': trainer.state_dict(with_replay),
     }
     path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.NamedTemporaryFile(dir=path.parent, prefix=path.name, delete=False) as file:
-        try:
-            torch.save(content, file)
-            file.flush()
-            os.fsync(file.fileno())
-            os.replace(file.name, path)
-        except BaseException:
-            os.unlink(file.name)
-            raise
+    partial = path.with_name(f'{path.name}.partial')
+    with partial.open('wb') as file:
+        torch.save(content, file)
+        file.flush()
+        os.fsync(file.fileno())
+    partial.replace(path)
     _sync_directory(path.parent)
 
 
@@ -74,7 +69,7 @@ def _read(path: Path) -> dict[str, Any]:
         raise CheckpointError(f'checkpoint {str(path)!r} not found, expected a file of `train`')
     try:
         content = torch.load(path, weights_only=True)
-    except (RuntimeError, EOFError, pickle.UnpicklingError, zipfile.BadZipFile) as error:
+    except (OSError, RuntimeError, EOFError, pickle.UnpicklingError) as error:
         raise CheckpointError(
             f'checkpoint {str(path)!r} cannot be read, expected a whole file of `train`: {error}'
         ) from error

@@ -176,9 +176,7 @@ class Ddpg:
         }
 
 
-def _drawn_with_target(
-    parameters: ParameterStack, generator: torch.Generator
-) -> ParameterStack:
+def _drawn_with_target(parameters: ParameterStack, generator: torch.Generator) -> ParameterStack:
     """Draw initial weights and make the target network that starts equal to them."""
     parameters.draw(initial_bounds(parameters.shapes), generator)
     target = parameters.like()

@@ -89,7 +89,9 @@ class HexapodLine(gymnasium.Env[Observation, NDArray[np.float32]]):
         self.observation_spec = ObservationSpec(observations)
         self.task = LineTask(self.config.task)
         self.cpg = Cpg(self.config.cpg.hopf)
-        self.observation_space = gymnasium.spaces.Box(-1.0, 1.0, (self.observation_spec.size,), np.float32)
+        self.observation_space = gymnasium.spaces.Box(
+            -1.0, 1.0, (self.observation_spec.size,), np.float32
+        )
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (ACTION_SIZE,), np.float32)
         self._keys = tuple(key for key in self.observation_spec.readings if key in CHANNEL_READERS)
         self._run_seed = 0

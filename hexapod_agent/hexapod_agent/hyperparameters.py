@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Hyper-parameters of the learner by section of article.yaml, which holds and explains their values.
+"""Hyper-parameters of the learner, by section of article.yaml, which holds and explains them.
 
 No torch here: the environment reads the same file as the learner.
 """
@@ -19,7 +19,7 @@ class ActorConfig:
         learning_rate: Adam's step size.
         l2: Factor of the L2 term in the gradient, weights only.
         gradient_threshold: Largest L2 norm of an array's gradient.
-        preactivation_penalty: Weight c of the term c mean(z²) of the loss, z the output before tanh.
+        preactivation_penalty: Weight c of the loss term c mean(z²), z the output before tanh.
         normalize_loss: Whether the loss's value term is divided by mean |Q| of the batch.
     """
 

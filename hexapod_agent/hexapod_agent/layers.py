@@ -56,9 +56,7 @@ class Dense:
 
     def backward(self, x: Tensor, y_gradient: Tensor) -> None:
         """Write the gradients of weight and bias: dW = dyᵀ x + l2 W, db = sum of dy."""
-        self._add_product(
-            self.weight, y_gradient.mT, x, beta=self._l2, out=self._weight_gradient
-        )
+        self._add_product(self.weight, y_gradient.mT, x, beta=self._l2, out=self._weight_gradient)
         torch.sum(y_gradient, dim=-2, keepdim=self._keep_bias_dim, out=self._bias_gradient)
 
     def backward_input(self, y_gradient: Tensor) -> Tensor:

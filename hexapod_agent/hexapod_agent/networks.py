@@ -10,6 +10,7 @@ Tensors have the shapes that `layers` tells.
 
 import math
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 
 import torch
 from torch import Tensor
@@ -46,8 +47,8 @@ class Actor:
         observation_size: int, action_size: int, hidden: Sequence[int]
     ) -> dict[str, tuple[int, ...]]:
         """Names and shapes of the arrays, in the order of the flat tensor."""
-        shapes = {}
-        for index, (inputs, outputs) in enumerate(_pairs([observation_size, *hidden])):
+        shapes: dict[str, tuple[int, ...]] = {}
+        for index, (inputs, outputs) in enumerate(pairwise([observation_size, *hidden])):
             shapes |= layer_shapes(f'hidden{index}', inputs, outputs)
         return shapes | layer_shapes('output', hidden[-1], action_size)
 
@@ -112,8 +113,8 @@ class Critic:
         observation_size: int, action_size: int, hidden: Sequence[int], merge: str = 'add'
     ) -> dict[str, tuple[int, ...]]:
         """Names and shapes of the arrays, in the order of the flat tensor."""
-        shapes = {}
-        for index, (inputs, outputs) in enumerate(_pairs([observation_size, *hidden])):
+        shapes: dict[str, tuple[int, ...]] = {}
+        for index, (inputs, outputs) in enumerate(pairwise([observation_size, *hidden])):
             shapes |= layer_shapes(f'observation{index}', inputs, outputs)
         shapes |= layer_shapes('action', action_size, hidden[-1])
         merged = hidden[-1] * (2 if merge == 'append' else 1)
@@ -171,8 +172,3 @@ class Critic:
     def _merged_gradient(self, value_gradient: Tensor) -> Tensor:
         """Gradient before the ReLU that follows the merge."""
         return relu_backward(self._output.backward_input(value_gradient), self._merged)
-
-
-def _pairs(sizes: Sequence[int]) -> list[tuple[int, int]]:
-    """Inputs and outputs of consecutive layers."""
-    return list(zip(sizes[:-1], sizes[1:], strict=True))

@@ -27,9 +27,7 @@ class ClippedAdam:
         threshold: Largest norm of an array's gradient; a longer one is scaled down to it.
     """
 
-    def __init__(
-        self, parameters: ParameterStack, learning_rate: float, threshold: float
-    ) -> None:
+    def __init__(self, parameters: ParameterStack, learning_rate: float, threshold: float) -> None:
         self.gradients = parameters.like()
         self._threshold = threshold
         parameter = torch.nn.Parameter(parameters.flat, requires_grad=False)

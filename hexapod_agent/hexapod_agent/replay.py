@@ -4,6 +4,7 @@
 """Replay buffer that stores each observation once: the next one is in the following row."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import torch
@@ -143,7 +144,7 @@ class ReplayBuffer:
             last = np.where(goes_on, (last + 1) % self.capacity, last)
         return reward, last, np.where(terminated, np.float32(0.0), factor)
 
-    def state(self) -> dict[str, Tensor | int]:
+    def state(self) -> dict[str, Any]:
         """Everything that `restore` needs, without the rows that were never written."""
         rows = self._rows
         return {
@@ -158,7 +159,7 @@ class ReplayBuffer:
             'row': self._row,
         }
 
-    def restore(self, state: dict[str, Tensor | int]) -> None:
+    def restore(self, state: dict[str, Any]) -> None:
         """Take over what `state` gave, of a buffer with the same sizes."""
         rows = len(state['reward'])
         for name in ('observation', 'action', 'reward', 'terminated', 'has_next', 'starts'):

@@ -4,7 +4,7 @@
 """What a training reports of one episode; the message EpisodeResult has the same fields."""
 
 import math
-from collections import Counter
+from collections import defaultdict
 from dataclasses import dataclass
 
 import numpy as np
@@ -57,7 +57,7 @@ class EpisodeRecord:
     def __init__(self, episode: int) -> None:
         self._episode = episode
         self.episode_return = 0.0
-        self._terms: Counter[str] = Counter()
+        self._terms: defaultdict[str, float] = defaultdict(float)
         self._losses = np.zeros(3)
         self._updates = 0
         self._saturated = 0

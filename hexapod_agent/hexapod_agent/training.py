@@ -38,7 +38,6 @@ class Trainer:
         agent: Networks and their update.
         episode: Episodes that are complete; a checkpoint is taken between two.
         returns: Return of each complete episode.
-        summary: The last complete episode, None before the first.
     """
 
     def __init__(self, spec: ObservationSpec, config: AgentConfig, seed: int) -> None:
@@ -62,8 +61,8 @@ class Trainer:
         )
         self.episode = 0
         self.returns: list[float] = []
-        self.summary: EpisodeSummary | None = None
-        self._record: EpisodeRecord | None = None
+        self._summary: EpisodeSummary | None = None
+        self._record = EpisodeRecord(0)
         self._action: NDArray[np.float32] | None = None
         self._step = 0
 
@@ -72,6 +71,13 @@ class Trainer:
         """Mean of the last `window` returns: at the end, the final average reward."""
         window = self.returns[-self.config.training.window :]
         return float(np.mean(window)) if window else math.nan
+
+    @property
+    def summary(self) -> EpisodeSummary:
+        """The last complete episode."""
+        if self._summary is None:
+            raise RuntimeError('summary: no episode is complete yet')
+        return self._summary
 
     def begin_episode(self, episode: int) -> None:
         """Start episode number `episode`, dropping one that was left unfinished.
@@ -85,9 +91,7 @@ class Trainer:
         self._noise.reset()
         self._action = None
 
-    def observe(
-        self, observation: NDArray[np.float32], outcome: Outcome
-    ) -> NDArray[np.float32]:
+    def observe(self, observation: NDArray[np.float32], outcome: Outcome) -> NDArray[np.float32]:
         """Store the step that ends here, and choose the next action.
 
         Args:
@@ -120,10 +124,9 @@ class Trainer:
         """Store the last step and close the episode."""
         self._store(observation, outcome)
         self.returns.append(self._record.episode_return)
-        self.summary = self._record.summarize(outcome, self.average_return)
+        self._summary = self._record.summarize(outcome, self.average_return)
         self.episode += 1
-        self._record = None
-        return self.summary
+        return self._summary
 
     def _store(self, observation: NDArray[np.float32], outcome: Outcome) -> None:
         """Add the transition that ends in `observation`, or begin an episode with it."""

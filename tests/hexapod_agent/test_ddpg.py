@@ -90,7 +90,9 @@ def test_update_is_that_of_autograd(penalty, normalize):
     critic_loss = torch.nn.functional.mse_loss(value, target)
     adam(critic, critic_loss)
     z = forward(Actor, actor, batch.observation)
-    value = forward(Critic, {k: a.detach() for k, a in critic.items()}, batch.observation, z.tanh())
+    value = forward(
+        Critic, {k: a.detach() for k, a in critic.items()}, batch.observation, z.tanh()
+    )
     scale = value.detach().abs().mean() if normalize else 1.0
     actor_loss = -value.mean() / scale + penalty * (z * z).mean()
     adam(actor, actor_loss)
@@ -164,7 +166,10 @@ def test_learns_the_best_action_of_each_state():
         agent.batch.reward.copy_(-(error * error).sum(dim=-1, keepdim=True))
         agent.update()
     error = torch.cat(
-        [agent.act(observation[None]) - observation[:3] for observation in agent.batch.observation[0]]
+        [
+            agent.act(observation[None]) - observation[:3]
+            for observation in agent.batch.observation[0]
+        ]
     )
     # A constant action would miss by 0.46, the standard deviation of U(-0.8, 0.8).
     assert error.square().mean().sqrt() < 0.15

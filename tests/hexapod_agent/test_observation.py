@@ -73,12 +73,12 @@ def test_reading_that_is_not_finite_is_named(value):
 def test_reading_of_wrong_length_is_named():
     values = readings()
     values['orientation'] = np.zeros(1)
-    with pytest.raises(ObservationError, match='body orientation.*1 numbers, expected 4'):
+    with pytest.raises(ObservationError, match=r'body orientation.*1 numbers, expected 4'):
         ObservationSpec('C').assemble(values, np.zeros(30))
 
 
 def test_missing_reading_is_named():
     values = readings()
     del values['foot_contacts']
-    with pytest.raises(ObservationError, match='foot contacts.*nothing, expected 6'):
+    with pytest.raises(ObservationError, match=r'foot contacts.*nothing, expected 6'):
         ObservationSpec('G').assemble(values, np.zeros(30))

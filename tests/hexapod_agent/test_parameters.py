@@ -27,7 +27,7 @@ def test_draw_fills_each_array_within_its_bound_and_leaves_the_padding():
     stack.draw(bounds, torch.Generator().manual_seed(0))
     for name, array in stack.arrays.items():
         assert 0.9 * bounds[name] < array.abs().max() <= bounds[name]
-    assert stack.flat[:, 15] .eq(0).all()
+    assert stack.flat[:, 15].eq(0).all()
 
 
 def test_agents_of_a_stack_start_apart():

@@ -1,0 +1,101 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""How well a policy does the task: noise-free episodes from seeded starts, in numbers."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from hexapod_sim.robot import CONTROL_PERIOD_NS
+from hexapod_sim.sensors import read
+from numpy.typing import NDArray
+
+from hexapod_agent.env import HexapodLine
+from hexapod_agent.policies import Policy
+
+_PERIOD_S = CONTROL_PERIOD_NS * 1e-9
+_LAST_STEPS = 200  # 5 s, in which the offset is judged
+
+
+@dataclass(frozen=True)
+class Episode:
+    """One evaluated episode.
+
+    Attributes:
+        episode_return: Sum of the rewards.
+        offsets: Offset from the line after each step (steps,), m.
+        distance: Way made good along the line, m.
+        energy: Integral of |torque x velocity| over all joints, J.
+        fell: Whether it ended by a failure.
+    """
+
+    episode_return: float
+    offsets: NDArray[np.float64]
+    distance: float
+    energy: float
+    fell: bool
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Figures over all starts.
+
+    Attributes:
+        starts: Episodes.
+        final_average_reward: Mean return.
+        return_deviation: Standard deviation of the returns between starts.
+        mean_offset: Mean |offset| over the last 5 s of the episodes, m.
+        offset_95: 95th percentile of the same, m.
+        speed: Way along the line over time, m/s.
+        falls: Episodes that ended by a failure.
+        energy_per_metre: Mechanical energy over way along the line, J/m; NaN without way.
+    """
+
+    starts: int
+    final_average_reward: float
+    return_deviation: float
+    mean_offset: float
+    offset_95: float
+    speed: float
+    falls: int
+    energy_per_metre: float
+
+
+def run_episode(env: HexapodLine, policy: Policy, seed: int, episode: int) -> Episode:
+    """Let a policy run one episode of an environment."""
+    observation, _ = env.reset(seed=seed, options={'episode': episode})
+    simulation = env.task.simulation
+    start = float(simulation.position[0])
+    episode_return, power, offsets = 0.0, 0.0, []
+    while not (env.outcome.terminated or env.outcome.truncated):
+        observation, reward, *_ = env.step(policy(observation))
+        episode_return += reward
+        offsets.append(env.task.line_offset)
+        joints = read(simulation, ('joint_torques', 'joint_velocities'))
+        power += float(np.abs(joints['joint_torques'] * joints['joint_velocities']).sum())
+    return Episode(
+        episode_return,
+        np.array(offsets),
+        float(simulation.position[0]) - start,
+        power * _PERIOD_S,
+        env.outcome.terminated,
+    )
+
+
+def summarize(episodes: list[Episode]) -> Evaluation:
+    """Reduce episodes to figures."""
+    returns = [episode.episode_return for episode in episodes]
+    offsets = np.abs(np.concatenate([episode.offsets[-_LAST_STEPS:] for episode in episodes]))
+    distance = sum(episode.distance for episode in episodes)
+    time = sum(episode.offsets.size for episode in episodes) * _PERIOD_S
+    energy = sum(episode.energy for episode in episodes)
+    return Evaluation(
+        starts=len(episodes),
+        final_average_reward=float(np.mean(returns)),
+        return_deviation=float(np.std(returns)),
+        mean_offset=float(offsets.mean()),
+        offset_95=float(np.percentile(offsets, 95)),
+        speed=distance / time,
+        falls=sum(episode.fell for episode in episodes),
+        energy_per_metre=energy / distance if distance > 0.0 else float('nan'),
+    )

@@ -1,0 +1,35 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Agents that can be evaluated: a trained one, and baselines that observe nothing."""
+
+from collections.abc import Callable
+
+import numpy as np
+import torch
+from hexapod_cpg.mapping import ACTION_SIZE
+from numpy.typing import NDArray
+
+from hexapod_agent.ddpg import Ddpg
+
+Policy = Callable[[NDArray[np.float32]], NDArray[np.float32]]
+
+
+def constant_policy(action: NDArray[np.float32]) -> Policy:
+    """Make an agent that always does the same; zeros are a straight walk."""
+    return lambda observation: action
+
+
+def random_policy(seed: int) -> Policy:
+    """Make an agent that draws every action from U(-1, 1)."""
+    generator = np.random.default_rng(seed)
+    return lambda observation: generator.uniform(-1.0, 1.0, ACTION_SIZE).astype(np.float32)
+
+
+def trained_policy(agent: Ddpg) -> Policy:
+    """Make an agent that acts as the actor says, without noise."""
+
+    def act(observation: NDArray[np.float32]) -> NDArray[np.float32]:
+        return agent.act(torch.from_numpy(observation).unsqueeze(0))[0].numpy()
+
+    return act

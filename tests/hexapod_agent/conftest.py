@@ -1,0 +1,30 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Small runs that several test modules train."""
+
+import pytest
+from hexapod_agent.config import AgentConfig
+from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.training import Trainer
+
+
+@pytest.fixture(scope='session')
+def small_config() -> AgentConfig:
+    """Episodes of 40 steps, tiny networks."""
+    changes = {
+        'task': {'time_limit_steps': 40},
+        'actor': {'hidden': [16, 12]},
+        'critic': {'hidden': [16, 12]},
+        'ddpg': {'batch_size': 16, 'buffer_size': 5000},
+        'noise': {'decay': 1e-4},
+    }
+    return AgentConfig.from_mapping(changes, 'small_config')
+
+
+@pytest.fixture
+def make_trainer(small_config):
+    def make(observations: str = 'BC', seed: int = 5) -> Trainer:
+        return Trainer(ObservationSpec(observations), small_config, seed)
+
+    return make

@@ -1,0 +1,117 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The trainer's bookkeeping, its determinism, and its refusal of numbers that are not finite."""
+
+import numpy as np
+import pytest
+import torch
+from hexapod_agent.env import HexapodLine
+from hexapod_agent.train import train_episode
+from hexapod_agent.training import TrainingDivergedError
+from hexapod_sim.task import Outcome
+
+
+def outcome(step: int, reward: float = 1.0, **changes) -> Outcome:
+    values = {'terminated': False, 'truncated': False, 'cause': ''} | changes
+    return Outcome(step, reward, {'velocity': 0.25 * reward, 'alive': 0.75 * reward}, **values)
+
+
+def observation(trainer, value: float = 0.0) -> np.ndarray:
+    return np.full(trainer.spec.size, value, np.float32)
+
+
+def play(trainer, rewards) -> None:
+    """One episode with made-up observations and rewards."""
+    trainer.begin_episode(trainer.episode)
+    for step in range(len(rewards)):
+        reward = rewards[step - 1] if step else 0.0
+        trainer.observe(observation(trainer, step / 10), outcome(step, reward))
+        trainer.learn()
+    last = outcome(len(rewards), rewards[-1], terminated=True, cause='flipped')
+    trainer.end_episode(observation(trainer, 0.9), last)
+
+
+def test_summary_adds_up(make_trainer):
+    trainer = make_trainer()
+    play(trainer, [1.0, 2.0, 3.0])
+    summary = trainer.summary
+    assert (summary.episode, summary.steps, summary.episode_return) == (0, 3, 6.0)
+    assert summary.terms == {'velocity': 1.5, 'alive': 4.5}
+    assert (summary.terminated, summary.cause) == (True, 'flipped')
+    assert summary.updates == 0
+    assert np.isnan(summary.critic_loss)
+    play(trainer, [1.0] * 30)
+    # 3 transitions are stored, a batch is 16: the update after step 13 is the first of 30 - 13.
+    assert trainer.summary.updates == 17
+    assert trainer.summary.average_return == trainer.average_return == (6.0 + 30.0) / 2
+    assert np.isfinite(trainer.summary.critic_loss)
+
+
+def test_window_of_the_average_return(make_trainer):
+    trainer = make_trainer()
+    trainer.returns = [0.0] * 100 + [1.0] * trainer.config.training.window
+    assert trainer.average_return == 1.0
+
+
+def test_actions_are_within_bounds_and_noisy(make_trainer):
+    trainer = make_trainer()
+    trainer.begin_episode(0)
+    first = trainer.observe(observation(trainer), outcome(0))
+    second = trainer.observe(observation(trainer), outcome(1))
+    assert first.dtype == np.float32
+    assert np.abs(second).max() <= 1.0
+    assert not np.array_equal(first, second)
+
+
+def test_episodes_come_in_order(make_trainer):
+    with pytest.raises(ValueError, match='episode 3 cannot begin, expected episode 0'):
+        make_trainer().begin_episode(3)
+
+
+def weights(trainer) -> torch.Tensor:
+    return torch.cat(
+        [trainer.agent.actor_parameters.flat, trainer.agent.critic_parameters.flat], 1
+    )
+
+
+def test_same_seed_same_weights(make_trainer, small_config):
+    runs = []
+    for seed in (5, 5, 6):
+        trainer = make_trainer('BC', seed)
+        env = HexapodLine('BC', small_config)
+        for _ in range(3):
+            train_episode(env, trainer)
+        runs.append(trainer)
+    assert torch.equal(weights(runs[0]), weights(runs[1]))
+    assert runs[0].returns == runs[1].returns
+    assert not torch.equal(weights(runs[0]), weights(runs[2]))
+
+
+def test_observation_that_is_not_finite_names_channel_step_and_seed(make_trainer):
+    trainer = make_trainer()
+    trainer.begin_episode(0)
+    trainer.observe(observation(trainer), outcome(0))
+    bad = observation(trainer)
+    bad[trainer.spec.size - 1] = np.nan
+    message = r"'body orientation': orientation\[3\] is nan.*step 1 of episode 0, seed 5"
+    with pytest.raises(TrainingDivergedError, match=message):
+        trainer.observe(bad, outcome(1))
+
+
+def test_reward_that_is_not_finite_is_named(make_trainer):
+    trainer = make_trainer()
+    trainer.begin_episode(0)
+    trainer.observe(observation(trainer), outcome(0))
+    with pytest.raises(TrainingDivergedError, match=r'reward is inf.*step 1 of episode 0, seed 5'):
+        trainer.observe(observation(trainer), outcome(1, float('inf')))
+
+
+def test_loss_that_is_not_finite_is_named(make_trainer):
+    trainer = make_trainer()
+    play(trainer, [1.0] * 20)
+    trainer.agent.critic_parameters.flat[0, 0] = float('nan')
+    trainer.begin_episode(1)
+    trainer.observe(observation(trainer), outcome(0))
+    with pytest.raises(TrainingDivergedError, match=r'critic_loss.* is nan.*step 0 of episode 1'):
+        trainer.learn()
