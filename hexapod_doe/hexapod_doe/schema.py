@@ -20,8 +20,16 @@ from ament_index_python import PackageNotFoundError, get_package_share_path
 from hexapod_doe.errors import BagError
 
 _PRIMITIVES = frozenset(
-    ('bool', 'byte', 'char', 'float32', 'float64', 'string', 'wstring')
-    + tuple(f'{sign}int{bits}' for sign in ('', 'u') for bits in (8, 16, 32, 64))
+    [
+        'bool',
+        'byte',
+        'char',
+        'float32',
+        'float64',
+        'string',
+        'wstring',
+        *(f'{sign}int{bits}' for sign in ('', 'u') for bits in (8, 16, 32, 64)),
+    ]
 )
 _TYPE_NAME = re.compile(r'^([A-Za-z]\w*)/(?:msg/)?([A-Za-z]\w*)$')
 # A field's type is the first word of its line, less array and string bounds; a constant is told

@@ -12,7 +12,6 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-
 from hexapod_doe.bag_writer import BagWriter
 from hexapod_doe.rosbag2 import Topic
 

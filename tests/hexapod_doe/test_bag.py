@@ -9,12 +9,11 @@ import subprocess
 import sys
 
 import pytest
-from rosbags.rosbag2 import StoragePlugin, Writer
-from rosbags.typesys import Stores, get_typestore
-
 from hexapod_doe.bag import find_bags, is_complete, read_run, read_topic
 from hexapod_doe.bag_writer import BagWriter
 from hexapod_doe.errors import BagError
+from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.typesys import Stores, get_typestore
 
 
 def test_run_comes_back(write_bag):
@@ -148,7 +147,7 @@ def test_foreign_bag_is_no_run_but_its_topics_can_be_read(tmp_path):
 
 def test_other_storage(tmp_path):
     bag = foreign_bag(tmp_path / 'talk', StoragePlugin.SQLITE3)
-    with pytest.raises(BagError, match="storage 'sqlite3', expected .* MCAP"):
+    with pytest.raises(BagError, match=r"storage 'sqlite3', expected .* MCAP"):
         read_run(bag)
 
 

@@ -8,14 +8,13 @@ import resource
 
 import pytest
 import yaml
+from hexapod_doe.bag_writer import BagWriter
+from hexapod_doe.errors import BagError
+from hexapod_doe.rosbag2 import OfferedQos, Topic
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
-
-from hexapod_doe.bag_writer import BagWriter
-from hexapod_doe.errors import BagError
-from hexapod_doe.rosbag2 import OfferedQos, Topic
 
 
 def test_rosbags_counts_and_decodes_every_message(write_bag, samples):
@@ -76,9 +75,9 @@ def test_bag_has_its_name_only_when_it_is_whole(tmp_path, samples):
 
 
 def test_abandoned_bag_is_readable_under_its_unfinished_name(tmp_path, samples):
-    with pytest.raises(RuntimeError), BagWriter(tmp_path / 'r1', {}) as writer:
-        samples.fill(writer, 2)
-        raise RuntimeError
+    writer = BagWriter(tmp_path / 'r1', {})
+    samples.fill(writer, 2)
+    writer.__exit__(RuntimeError, RuntimeError(), None)
     with Reader(tmp_path / 'r1.partial') as reader:
         assert reader.message_count == 2
 
@@ -132,5 +131,5 @@ def test_full_disk_is_one_clear_error_and_loses_no_whole_chunk(tmp_path, full_di
 
 def test_read_only_folder_is_one_clear_error(tmp_path):
     (tmp_path / 'file').write_text('')
-    with pytest.raises(BagError, match='cannot write: .*file'):
+    with pytest.raises(BagError, match=r'cannot write: .*file'):
         BagWriter(tmp_path / 'file' / 'r1', {})

@@ -7,13 +7,12 @@ import subprocess
 import sys
 
 import pytest
-from rosbags.highlevel import AnyReader
-
 from hexapod_doe.bag import find_bags, is_complete, read_run
 from hexapod_doe.bag_writer import BagWriter
 from hexapod_doe.errors import BagError
 from hexapod_doe.rosbag2 import partial_path
 from hexapod_doe.salvage import salvage, set_aside
+from rosbags.highlevel import AnyReader
 
 # Records episodes without end; each is flushed, then announced.
 RECORD_FOR_EVER = """

@@ -1,0 +1,295 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Node `recorder`: writes a run's bag from what is on the topics, byte for byte."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from diagnostic_msgs.msg import DiagnosticStatus
+from hexapod_interfaces.msg import EpisodeResult
+from hexapod_interfaces.srv import FinishRecording, RecordEpisode, StartRecording
+from hexapod_node.conditions import until_true
+from hexapod_node.coroutine_service import create_coroutine_service
+from hexapod_node.diagnostics import Diagnostics, Health
+from hexapod_node.parameters import Parameter, declare
+from hexapod_node.qos import RECORD
+from hexapod_node.raw_topics import RawSubscriptions, subscribe_raw
+from hexapod_node.spin import run
+from hexapod_node.stamps import to_nanoseconds
+from hexapod_sim.robot import CONTROL_PERIOD_NS
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from rclpy.serialization import deserialize_message
+from rclpy.topic_endpoint_info import TopicEndpointInfo
+
+from hexapod_doe.bag import EPISODE_RESULT
+from hexapod_doe.errors import BagError
+from hexapod_doe.recording import Recording
+from hexapod_doe.rosbag2 import OfferedQos, Topic
+from hexapod_doe.salvage import set_aside
+
+RESULT_TOPIC = 'episode_result'
+
+
+def _seconds(name: str, default: float, description: str) -> Parameter:
+    return Parameter(name, default, description, unit='s', range=(0.0, 600.0), read_only=False)
+
+
+PARAMETERS = (
+    _seconds(
+        'control_period',
+        CONTROL_PERIOD_NS * 1e-9,
+        'Grid of the stamps, on which missing samples are found; 0 where there is none.',
+    ),
+    _seconds(
+        'match_timeout',
+        5.0,
+        'How long to wait until each topic of a sampled episode has a publisher.',
+    ),
+    _seconds(
+        'drain_timeout',
+        2.0,
+        'How long to wait at the end of a sampled episode for its last samples.',
+    ),
+    _seconds(
+        'result_timeout',
+        2.0,
+        'How long to wait at the end of a run for its last episode results.',
+    ),
+)
+
+
+class RecorderNode(Node):
+    """Holds the bag of at most one run.
+
+    The results of its episodes are recorded throughout. The run's other topics are subscribed
+    only while a sampled episode lasts, so that nobody publishes them for nothing.
+    """
+
+    def __init__(self) -> None:
+        super().__init__('recorder')
+        declare(self, PARAMETERS)
+        self._recording: Recording | None = None
+        self._topics: list[str] = []
+        self._samples = RawSubscriptions(self, self._on_sample)
+        self._failure = ''
+        """Why nothing more can be recorded of the run."""
+        self.create_service(StartRecording, '~/start', self._on_start)
+        create_coroutine_service(self, RecordEpisode, '~/episode', self._on_episode)
+        create_coroutine_service(self, FinishRecording, '~/finish', self._on_finish)
+        # Always there, so that it is matched when a run begins.
+        subscribe_raw(self, RESULT_TOPIC, EPISODE_RESULT, self._on_result, RECORD)
+        Diagnostics(self, self._health)
+
+    def destroy_node(self) -> None:
+        """Leave the bag of an open run readable, under its unfinished name."""
+        self._abandon('the recorder stops')
+        super().destroy_node()
+
+    # Services
+
+    def _on_start(
+        self, request: StartRecording.Request, response: StartRecording.Response
+    ) -> StartRecording.Response:
+        """Open the bag of a run."""
+        self._abandon(f'run {request.run_id} begins')
+        bag = Path(request.bag)
+        try:
+            if not request.run_id or not request.bag:
+                raise BagError(f"run '{request.run_id}', bag '{bag}': expected both to be named")
+            cut = set_aside(bag)
+            if cut is not None:
+                self.get_logger().warning(f'an earlier recording was cut; it is now {cut}')
+            period_ns = round(self._seconds('control_period') * 1e9)
+            metadata = {entry.key: entry.value for entry in request.metadata}
+            self._recording = Recording(request.run_id, bag, metadata, period_ns)
+        except BagError as error:
+            response.message = str(error)
+            return response
+        self._topics = [self.resolve_topic_name(topic) for topic in request.topics]
+        self._failure = ''
+        response.success = True
+        return response
+
+    async def _on_episode(
+        self, request: RecordEpisode.Request, response: RecordEpisode.Response
+    ) -> RecordEpisode.Response:
+        """Begin or end to record every topic."""
+        try:
+            recording = self._usable_recording()
+            if request.enable:
+                await self._begin_sample(recording, request.episode)
+            else:
+                faults = await self._end_sample(recording, to_nanoseconds(request.last))
+                response.message = '; '.join(faults)
+            response.success = True
+        except BagError as error:
+            self._samples.close()
+            response.message = str(error)
+        response.topics = self._samples.topics
+        return response
+
+    async def _on_finish(
+        self, request: FinishRecording.Request, response: FinishRecording.Response
+    ) -> FinishRecording.Response:
+        """Close the bag, or say why it cannot be closed."""
+        try:
+            recording = self._usable_recording()
+            await until_true(
+                self,
+                lambda: not recording.lacking(request.episodes),
+                self._seconds('result_timeout'),
+            )
+            self._samples.close()
+            self._recording = None
+            metadata = {entry.key: entry.value for entry in request.metadata}
+            response.messages = recording.messages
+            response.bag = str(recording.finish(request.episodes, metadata))
+            response.success = True
+        except BagError as error:
+            response.message = str(error)
+        return response
+
+    # Sampled episodes
+
+    async def _begin_sample(self, recording: Recording, episode: int) -> None:
+        timeout_s = self._seconds('match_timeout')
+        self._samples.close()
+        if not await until_true(self, lambda: not self._unpublished(), timeout_s):
+            raise BagError(
+                f'episode {episode}: no publisher of {", ".join(self._unpublished())} within '
+                f'{timeout_s:g} s, expected one of each recorded topic'
+            )
+        publishers = {name: self.get_publishers_info_by_topic(name) for name in self._topics}
+        recording.begin_sample(episode, [_topic(name, publishers[name]) for name in publishers])
+        self._samples.open(publishers)
+        if not await until_true(self, lambda: not self._samples.unmatched(), timeout_s):
+            unheard = ', '.join(self._samples.unmatched())
+            raise BagError(
+                f'episode {episode}: {unheard} not heard within {timeout_s:g} s, expected a '
+                'publisher of compatible QoS'
+            )
+
+    async def _end_sample(self, recording: Recording, last_ns: int) -> list[str]:
+        await until_true(
+            self, lambda: not recording.waiting(last_ns), self._seconds('drain_timeout')
+        )
+        self._samples.close()
+        faults = recording.end_sample(last_ns)
+        for fault in faults:
+            self.get_logger().warning(f'run {recording.run_id}, {fault}')
+        return faults
+
+    def _unpublished(self) -> list[str]:
+        return [name for name in self._topics if not self.count_publishers(name)]
+
+    # Messages
+
+    def _on_result(self, data: bytes) -> None:
+        recording = self._recording
+        if recording is None or self._failure:
+            return
+        result = deserialize_message(data, EpisodeResult)
+        if result.run_id != recording.run_id:
+            self.get_logger().warning(
+                f"{RESULT_TOPIC}: result of run '{result.run_id}' ignored, "
+                f"expected run '{recording.run_id}'",
+                throttle_duration_sec=10.0,
+            )
+            return
+        name = self.resolve_topic_name(RESULT_TOPIC)
+        topic = _topic(name, self.get_publishers_info_by_topic(name))
+        try:
+            recording.add_result(topic, data, result.episode, result.steps)
+        except BagError as error:
+            self._fail(error)
+
+    def _on_sample(self, topic: str, data: bytes) -> None:
+        if self._recording is None or self._failure:
+            return
+        try:
+            self._recording.add_sample(topic, data)
+        except (BagError, ValueError) as error:
+            self._fail(error)
+
+    # State
+
+    def _usable_recording(self) -> Recording:
+        if self._failure:
+            raise BagError(self._failure)
+        if self._recording is None:
+            raise BagError(f'no run is being recorded, expected a call of {self.get_name()}/start')
+        return self._recording
+
+    def _fail(self, error: Exception) -> None:
+        self._failure = str(error)
+        self.get_logger().error(self._failure)
+
+    def _abandon(self, reason: str) -> None:
+        recording, self._recording = self._recording, None
+        self._samples.close()
+        if recording is not None:
+            partial_bag = recording.abandon()
+            self.get_logger().warning(
+                f'run {recording.run_id} ends unfinished, {reason}; its bag stays {partial_bag}'
+            )
+
+    def _seconds(self, parameter: str) -> float:
+        return float(self.get_parameter(parameter).value)
+
+    def _health(self) -> Health:
+        if self._failure:
+            return DiagnosticStatus.ERROR, self._failure, {}
+        if self._recording is None:
+            return DiagnosticStatus.OK, 'idle', {}
+        recording = self._recording
+        level = DiagnosticStatus.WARN if recording.incomplete else DiagnosticStatus.OK
+        return (
+            level,
+            f'recording run {recording.run_id}',
+            {
+                'bag': recording.bag,
+                'messages': recording.messages,
+                'episodes': len(recording.results),
+                'sampling': recording.sampling,
+                'incomplete': len(recording.incomplete),
+            },
+        )
+
+
+def _topic(name: str, publishers: list[TopicEndpointInfo]) -> Topic:
+    """Describe a topic as its publishers offer it.
+
+    Raises:
+        BagError: they publish different types.
+    """
+    types = sorted({publisher.topic_type for publisher in publishers})
+    if len(types) != 1:
+        raise BagError(f'topic {name}: types {", ".join(types) or "unknown"}, expected one')
+    return Topic(
+        name, types[0], tuple(_offered(publisher.qos_profile) for publisher in publishers)
+    )
+
+
+def _offered(qos: QoSProfile) -> OfferedQos:
+    return OfferedQos(
+        reliability=qos.reliability.name.lower(),
+        durability=qos.durability.name.lower(),
+        history=qos.history.name.lower(),
+        depth=qos.depth,
+        liveliness=qos.liveliness.name.lower(),
+        deadline_ns=qos.deadline.nanoseconds,
+        lifespan_ns=qos.lifespan.nanoseconds,
+        liveliness_lease_ns=qos.liveliness_lease_duration.nanoseconds,
+    )
+
+
+def main() -> None:
+    """Run the node until a signal comes."""
+    run(RecorderNode)
+
+
+if __name__ == '__main__':
+    main()
