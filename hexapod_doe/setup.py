@@ -27,7 +27,7 @@ setup(
             'player_node = hexapod_doe.player_node:main',
             'plan = hexapod_doe.plan:main',
             'analyze = hexapod_doe.analyze:main',
-            'run_case = hexapod_doe.run_case:main',
+            'campaign_status = hexapod_doe.campaign_status:main',
         ],
     },
 )

@@ -20,7 +20,7 @@ from hexapod_node.coroutines import sleep, start, until
 from hexapod_node.diagnostics import Diagnostics, Health
 from hexapod_node.parameters import Parameter, declare
 from hexapod_node.qos import LATCHED
-from hexapod_node.spin import StopSpinning, run
+from hexapod_node.spin import run
 from rclpy.action import ActionClient, get_action_names_and_types
 from rclpy.node import Node
 from rclpy.task import Future
@@ -93,6 +93,7 @@ class ManagerNode(Node):
         self._workers: dict[str, Worker] = {}
         self._alone_since = time.monotonic()
         self._fault: Exception | None = None
+        self.exit_status: int | None = None
         self._dashboard = Dashboard(
             len(self._campaign.rows), len(self._campaign.done), self._parameter('episodes')
         )
@@ -116,13 +117,15 @@ class ManagerNode(Node):
         """Notice new workers, lost ones, and the end."""
         if self._fault is not None:
             raise self._fault
+        if self.exit_status is not None:
+            return
         for text in self._local.revive():
             self._dashboard.log(text)
         self._discover()
         for worker in [w for w in self._workers.values() if w.lost()]:
             self._drop(worker)
         if self._campaign.finished:
-            raise StopSpinning(self._close())
+            self.exit_status = self._close()
         if self._workers:
             self._alone_since = time.monotonic()
         elif time.monotonic() - self._alone_since > self._parameter('worker_timeout'):
@@ -131,7 +134,7 @@ class ManagerNode(Node):
                 f'{self._parameter("worker_timeout"):g} s: expected one from local_workers or from '
                 '`ros2 launch hexapod_bringup worker.launch.xml`'
             )
-            raise StopSpinning(1)
+            self.exit_status = 1
 
     def _discover(self) -> None:
         for action, types in get_action_names_and_types(self):

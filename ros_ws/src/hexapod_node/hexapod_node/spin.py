@@ -19,12 +19,8 @@ from rclpy.utilities import remove_ros_args
 _WAIT_S = 0.5
 
 
-class StopSpinning(Exception):  # noqa: N818 - it is a request, not an error
-    """Raised in a callback to end the process, with its exit status."""
-
-    def __init__(self, status: int = 0) -> None:
-        super().__init__(status)
-        self.status = status
+EXIT_STATUS = 'exit_status'
+"""A node that sets an attribute of this name ends its process with that status."""
 
 
 def run(make: Callable[[], Node | Sequence[Node]], args: Sequence[str] | None = None) -> None:
@@ -39,9 +35,7 @@ def run(make: Callable[[], Node | Sequence[Node]], args: Sequence[str] | None = 
     try:
         made = make()
         nodes = [made] if isinstance(made, Node) else list(made)
-        spin(nodes)
-    except StopSpinning as stop:
-        status = stop.status
+        status = spin(nodes)
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     except (ValueError, OSError, ParameterException) as error:
@@ -57,13 +51,21 @@ def run(make: Callable[[], Node | Sequence[Node]], args: Sequence[str] | None = 
     sys.exit(status)
 
 
-def spin(nodes: Sequence[Node]) -> None:
-    """Serve the callbacks of the nodes, in the order of their events, until shutdown."""
+def spin(nodes: Sequence[Node]) -> int:
+    """Serve the nodes' callbacks in the order of their events, until shutdown or an exit status.
+
+    Returns:
+        The exit status that a node asked for; 0 at shutdown.
+    """
     executor = EventsExecutor()
     for node in nodes:
         executor.add_node(node)
     try:
         while rclpy.ok():
             executor.spin_once(timeout_sec=_WAIT_S)
+            for node in nodes:
+                if (status := getattr(node, EXIT_STATUS, None)) is not None:
+                    return int(status)
+        return 0
     finally:
         executor.shutdown()

@@ -1,0 +1,69 @@
+# The project's verbs. `make help` lists them.
+SHELL := /bin/bash
+.SHELLFLAGS := -o pipefail -c
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test test-slow lint type format bench clean clean-demo
+
+VENV ?= .venv
+PACKAGES := hexapod_sim hexapod_cpg hexapod_agent hexapod_doe
+ROS_PACKAGES := hexapod_node hexapod_bringup ros2_mini
+CODE := $(PACKAGES) $(ROS_PACKAGES:%=ros_ws/src/%)
+INTERFACES := $(shell find ros_ws/src/hexapod_interfaces -type f)
+INSTALLED := $(shell find $(CODE) -name setup.py -o -name setup.cfg -o -name package.xml -o -name '*.xml' \
+	-o -name '*.yaml' -o -name '*.html*' -o -name '*.launch.xml' -not -path '*/__pycache__/*')
+ENTER := export HEXAPOD_VENV='$(abspath $(VENV))'; source setup.bash
+DEMO := bags/demo
+DEMO_EPISODES := 4
+
+help:  ## list the verbs
+	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
+
+setup: ros_ws/install/.ready  ## make the virtual environment and build the workspace
+
+$(VENV)/.ready: requirements.txt requirements-ros.txt requirements-dev.txt constraints.txt
+	@python=$$(.ci/prerequisites) && "$$python" -m venv $(VENV)
+	@echo 'Installing the libraries and ROS 2 into $(VENV) ...'
+	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --progress-bar on \
+		-r requirements.txt -r requirements-ros.txt -r requirements-dev.txt
+	@touch $@
+
+ros_ws/install/.ready: $(VENV)/.ready $(INTERFACES) $(INSTALLED)
+	@echo 'Building the ROS workspace ...'
+	@unset _ROS_WHEELS_BOOTSTRAP_COMPLETE; source $(VENV)/bin/activate \
+	&& export AMENT_PREFIX_PATH='$(abspath $(VENV))' CMAKE_PREFIX_PATH='$(abspath $(VENV))' \
+	&& cd ros_ws && python -m colcon build --symlink-install \
+		--event-handlers console_cohesion- console_stderr- \
+		--cmake-args -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF
+	@touch $@
+
+demo: setup  ## run a small real campaign through the graph, to a report
+	@$(ENTER); if python -m hexapod_doe.campaign_status --quiet $(DEMO); then rm -rf $(DEMO); fi
+	@$(ENTER); [ -f $(DEMO)/plan.csv ] || ros2 run hexapod_doe plan --design eighth --replicates 1 --seed 1 \
+		--out $(DEMO)/plan.csv
+	@$(ENTER); ros2 launch hexapod_bringup campaign.launch.xml plan:=$(DEMO)/plan.csv \
+		episodes:=$(DEMO_EPISODES) record_every:=$(DEMO_EPISODES) local_workers:=2
+	@$(ENTER); ros2 run hexapod_doe analyze $(DEMO) --out $(DEMO)/report
+
+test: setup  ## run the tests, without the proofs that take minutes each
+	@$(ENTER); python -m pytest -m 'not slow' $(PYTEST)
+
+test-slow: setup  ## run the slow proofs
+	@$(ENTER); python -m pytest -m slow $(PYTEST)
+
+lint: setup  ## check style
+	@$(ENTER); ruff check . && ruff format --check .
+
+type: setup  ## check types
+	@$(ENTER); mypy $(PACKAGES:%=-p %) $(ROS_PACKAGES:%=-p %)
+
+format: setup  ## rewrite the code in the project's style
+	@$(ENTER); ruff check --fix-only . ; ruff format .
+
+bench: setup  ## measure speed, as ratios within one run
+	@$(ENTER); for bench in tests/benchmarks/bench_*.py; do echo "== $$bench"; python $$bench || exit 1; done
+
+clean-demo:  ## forget the demo campaign
+	rm -rf $(DEMO)
+
+clean:  ## remove the virtual environment and everything built
+	rm -rf $(VENV) ros_ws/build ros_ws/install ros_ws/log .mypy_cache .pytest_cache .ruff_cache

@@ -1,0 +1,35 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Every test process has a ROS domain of its own, strict message fields and its own logs."""
+
+import os
+import socket
+import tempfile
+
+# The port says which domain is taken, to every test process of this machine: the same one that
+# ROS's own domain_coordinator binds.
+_PORT_BASE = 32768
+_LAST_DOMAIN = 101
+
+
+def _reserve_domain() -> tuple[int, socket.socket]:
+    """Return a ROS domain that no other test process has, and the socket that holds it."""
+    for domain in range(1, _LAST_DOMAIN + 1):
+        holder = socket.socket()
+        try:
+            holder.bind(('127.0.0.1', _PORT_BASE + domain))
+        except OSError:
+            holder.close()
+            continue
+        return domain, holder
+    raise RuntimeError(f'no free ROS domain from 1 to {_LAST_DOMAIN}: end other test runs')
+
+
+# Before anything imports rclpy: it reads the first two once.
+os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
+os.environ['ROS_LOG_DIR'] = tempfile.mkdtemp(prefix='hexapod_ros_log_')
+os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+os.environ['OMP_NUM_THREADS'] = '1'
+_domain, _domain_holder = _reserve_domain()
+os.environ['ROS_DOMAIN_ID'] = str(_domain)

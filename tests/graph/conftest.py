@@ -1,0 +1,73 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""What the tests of live nodes share: a context per test, an executor, and bounded waits."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+
+import pytest
+import rclpy
+from hexapod_interfaces.action import TrainRun
+from rclpy.action import ActionClient
+from rclpy.experimental.events_executor import EventsExecutor
+from rclpy.node import Node
+from rclpy.task import Future
+
+
+class Graph:
+    """Nodes of a test, spun only while the test waits for something."""
+
+    def __init__(self) -> None:
+        self.executor = EventsExecutor()
+        self.nodes: list[Node] = []
+
+    def add(self, *nodes: Node) -> Node:
+        """Serve nodes until the test is over; return the first."""
+        for node in nodes:
+            self.nodes.append(node)
+            self.executor.add_node(node)
+        return nodes[0]
+
+    def until(self, predicate: Callable[[], bool], timeout_s: float = 30.0) -> None:
+        """Spin until the predicate holds."""
+        deadline = time.monotonic() + timeout_s
+        while not predicate():
+            assert time.monotonic() < deadline, f'not within {timeout_s:g} s'
+            self.executor.spin_once(timeout_sec=0.05)
+
+    def result(self, future: Future, timeout_s: float = 30.0) -> object:
+        """Spin until a future is done and return its result."""
+        self.until(future.done, timeout_s)
+        return future.result()
+
+    def call(self, service: type, name: str, request: object) -> object:
+        """Call a service and return its response."""
+        client = self.nodes[0].create_client(service, name)
+        self.until(client.service_is_ready)
+        return self.result(client.call_async(request))
+
+    def train(self, goal: TrainRun.Goal, action: str = 'train_run', timeout_s: float = 60.0):
+        """Send a goal, wait for its end and return the result response."""
+        client = ActionClient(self.nodes[0], TrainRun, action)
+        self.until(client.server_is_ready)
+        handle = self.result(client.send_goal_async(goal))
+        assert handle.accepted
+        response = self.result(handle.get_result_async(), timeout_s)
+        client.destroy()
+        return response
+
+
+@pytest.fixture
+def graph() -> Iterator[Graph]:
+    """Yield a graph with one helper node; everything in it ends with the test."""
+    rclpy.init()
+    made = Graph()
+    made.add(Node('test'))
+    yield made
+    for node in reversed(made.nodes):
+        node.destroy_node()
+    made.executor.shutdown()
+    rclpy.shutdown()

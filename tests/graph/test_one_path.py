@@ -1,0 +1,143 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The environment, a composed worker and separate processes: the same numbers to the last bit."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import gymnasium
+import numpy as np
+import pytest
+from hexapod_agent.agent_node import AgentNode
+from hexapod_agent.observation import LETTERS
+from hexapod_agent.training import Trainer
+from hexapod_cpg.cpg_node import CpgNode
+from hexapod_interfaces.action import TrainRun
+from hexapod_sim.sim_node import SimNode
+from trajectory_msgs.msg import JointTrajectory
+
+pytestmark = pytest.mark.graph
+SEED = 11
+STEPS = 600
+
+
+def planned_actions() -> np.ndarray:
+    """Return 600 actions that use the whole range, changing slowly enough to walk."""
+    generator = np.random.default_rng(5)
+    corners = generator.uniform(-1.0, 1.0, (STEPS // 20 + 2, 30))
+    steps = np.arange(STEPS) / 20
+    columns = [np.interp(steps, np.arange(len(corners)), column) for column in corners.T]
+    return np.array(columns, dtype=np.float32).T
+
+
+class ScriptedTrainer(Trainer):
+    """Plays the planned actions and keeps what it is shown."""
+
+    def __init__(self, *args) -> None:
+        super().__init__(*args)
+        self.actions = planned_actions()
+        self.observations: list[np.ndarray] = []
+        self.rewards: list[float] = []
+
+    def observe(self, observation, outcome):
+        super().observe(observation, outcome)
+        self._keep(observation, outcome)
+        self._action = self.actions[outcome.step]
+        return self._action
+
+    def end_episode(self, observation, outcome):
+        self._keep(observation, outcome)
+        return super().end_episode(observation, outcome)
+
+    def learn(self) -> None:
+        """Learn nothing."""
+
+    def _keep(self, observation, outcome) -> None:
+        self.observations.append(observation.copy())
+        self.rewards.append(outcome.reward)
+
+
+class Tape:
+    """What one path produced."""
+
+    def __init__(self, observations, rewards, targets) -> None:
+        self.observations = np.array(observations)
+        self.rewards = np.array(rewards)
+        self.targets = np.array(targets)
+
+    def assert_equal(self, other: Tape) -> None:
+        np.testing.assert_array_equal(self.rewards, other.rewards)
+        np.testing.assert_array_equal(self.observations, other.observations)
+        np.testing.assert_array_equal(self.targets, other.targets)
+
+
+@pytest.fixture(scope='module')
+def reference() -> Tape:
+    """Play the actions in the Gymnasium environment."""
+    env = gymnasium.make('hexapod_agent:HexapodLine-v0', observations=LETTERS)
+    observation, _ = env.reset(seed=SEED)
+    observations, rewards, targets = [observation], [0.0], []
+    for action in planned_actions():
+        observation, reward, terminated, truncated, info = env.step(action)
+        observations.append(observation)
+        rewards.append(reward)
+        targets.append(info['joint_targets'])
+        if terminated or truncated:
+            break
+    assert len(targets) > STEPS // 4, 'the planned actions end the episode too early'
+    return Tape(observations, rewards, targets)
+
+
+def play_on_graph(graph) -> Tape:
+    """Play the actions through an agent node; sim and pattern generator are there already."""
+    trainers: list[ScriptedTrainer] = []
+    targets: list[list[list[float]]] = []
+
+    def make_trainer(*args) -> ScriptedTrainer:
+        trainers.append(ScriptedTrainer(*args))
+        return trainers[0]
+
+    def keep(message: JointTrajectory) -> None:
+        targets.append([list(point.positions) for point in message.points])
+
+    graph.nodes[0].create_subscription(JointTrajectory, 'joint_trajectory', keep, 1000)
+    publishers = graph.nodes[0].count_publishers
+    graph.add(AgentNode(make_trainer))
+    graph.until(lambda: publishers('joint_trajectory') == 1)
+    goal = TrainRun.Goal(run_id='one_path', observations=LETTERS, seed=SEED, episodes=1)
+    response = graph.train(goal)
+    assert response.result.message == ''
+    (trainer,) = trainers
+    graph.until(lambda: len(targets) == len(trainer.rewards) - 1)
+    return Tape(trainer.observations, trainer.rewards, targets)
+
+
+@contextmanager
+def process(*command: str) -> Iterator[subprocess.Popen]:
+    """Run a node as a process of its own, and check that SIGINT ends it well."""
+    running = subprocess.Popen(command, env=os.environ)
+    try:
+        yield running
+    finally:
+        running.send_signal(signal.SIGINT)
+        assert running.wait(10.0) == 0
+
+
+def test_composed_worker_equals_environment(graph, reference: Tape) -> None:
+    graph.add(SimNode(), CpgNode())
+    play_on_graph(graph).assert_equal(reference)
+
+
+@pytest.mark.system
+def test_separate_processes_equal_environment(graph, reference: Tape) -> None:
+    with (
+        process('ros2', 'run', 'hexapod_sim', 'sim_node'),
+        process('ros2', 'run', 'hexapod_cpg', 'cpg_node'),
+    ):
+        play_on_graph(graph).assert_equal(reference)
