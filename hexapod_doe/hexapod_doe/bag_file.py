@@ -20,7 +20,7 @@ from mcap_ros2.decoder import DecoderFactory
 from zstandard import ZstdError
 
 from hexapod_doe.errors import BagError
-from hexapod_doe.rosbag2 import METADATA_FILE, ROOT_KEY, RUN_RECORD, partial_path
+from hexapod_doe.rosbag2 import METADATA_FILE, ROOT_KEY, RUN_RECORD, offered_qos, partial_path
 
 _YAML_LOADER = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
 DAMAGE = (McapError, ZstdError, struct.error, ValueError, OSError)
@@ -42,7 +42,9 @@ class BagFile:
         path: the directory.
         types: message type by topic.
         counts: number of messages by topic.
-        qos: offered QoS profiles by topic, as metadata.yaml has them.
+        qos: what the publishers of each topic offered.
+        start_ns: time of the first message.
+        files: the MCAP files, in order.
     """
 
     def __init__(self, path: str | Path) -> None:
@@ -60,9 +62,11 @@ class BagFile:
             }
             self.types = {name: e['topic_metadata']['type'] for name, e in listed.items()}
             self.qos = {
-                name: e['topic_metadata']['offered_qos_profiles'] for name, e in listed.items()
+                name: offered_qos(e['topic_metadata'].get('offered_qos_profiles', ()))
+                for name, e in listed.items()
             }
             self.counts = {name: int(e['message_count']) for name, e in listed.items()}
+            self.start_ns = int(information['starting_time']['nanoseconds_since_epoch'])
             self.files = [self.path / name for name in information['relative_file_paths']]
         except (KeyError, TypeError, AttributeError) as error:
             raise self._foreign(f'{METADATA_FILE} lacks {error}') from error

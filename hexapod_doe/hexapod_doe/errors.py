@@ -4,5 +4,5 @@
 """The errors that users of campaigns and bags meet."""
 
 
-class BagError(Exception):
+class BagError(ValueError):
     """A bag cannot be read or written; the text names the path and what was expected of it."""

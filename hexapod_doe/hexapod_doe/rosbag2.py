@@ -27,6 +27,12 @@ _UNFINISHED = re.compile(r'\.(partial|cut_\d+|salvaged)$')
 
 # rmw's value for "no limit", as rosbag2 spells it: the most nanoseconds that int64 holds.
 _INFINITE_NS = 2**63 - 1
+_RMW_NAMES = {
+    'history': {0: 'system_default', 1: 'keep_last', 2: 'keep_all', 3: 'unknown'},
+    'reliability': {0: 'system_default', 1: 'reliable', 2: 'best_effort', 3: 'unknown'},
+    'durability': {0: 'system_default', 1: 'transient_local', 2: 'volatile', 3: 'unknown'},
+    'liveliness': {0: 'system_default', 1: 'automatic', 3: 'manual_by_topic', 4: 'unknown'},
+}
 
 
 @dataclass(frozen=True)
@@ -55,20 +61,6 @@ class OfferedQos:
             'liveliness_lease_duration': _duration(self.liveliness_lease_ns),
             'avoid_ros_namespace_conventions': False,
         }
-
-    @classmethod
-    def from_dict(cls, profile: Mapping[str, Any]) -> OfferedQos:
-        """Return the profile that `as_dict` gave, or that rosbag2 of Jazzy wrote."""
-        return cls(
-            reliability=profile['reliability'],
-            durability=profile['durability'],
-            history=profile['history'],
-            depth=profile['depth'],
-            liveliness=profile['liveliness'],
-            deadline_ns=_nanoseconds(profile['deadline']),
-            lifespan_ns=_nanoseconds(profile['lifespan']),
-            liveliness_lease_ns=_nanoseconds(profile['liveliness_lease_duration']),
-        )
 
 
 @dataclass(frozen=True)
@@ -166,6 +158,27 @@ def information(file_name: str, topics: Iterable[Topic], extent: Extent) -> dict
 def qos_text(profiles: Sequence[OfferedQos]) -> str:
     """Return the profiles as a channel's metadata holds them, equal to those of metadata.yaml."""
     return to_yaml([profile.as_dict() for profile in profiles])
+
+
+def offered_qos(profiles: str | Sequence[Mapping[str, Any]]) -> tuple[OfferedQos, ...]:
+    """Return the profiles of a topic, as any version of rosbag2 wrote them.
+
+    Up to version 8 they are a YAML text, and policies are the numbers of rmw/types.h.
+    """
+    if isinstance(profiles, str):
+        profiles = yaml.safe_load(profiles) or []
+    return tuple(_profile(entry) for entry in profiles)
+
+
+def _profile(entry: Mapping[str, Any]) -> OfferedQos:
+    named = {policy: _RMW_NAMES[policy].get(entry[policy], entry[policy]) for policy in _RMW_NAMES}
+    return OfferedQos(
+        **named,
+        depth=entry['depth'],
+        deadline_ns=_nanoseconds(entry['deadline']),
+        lifespan_ns=_nanoseconds(entry['lifespan']),
+        liveliness_lease_ns=_nanoseconds(entry['liveliness_lease_duration']),
+    )
 
 
 def to_yaml(value: Any) -> str:

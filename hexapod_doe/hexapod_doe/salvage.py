@@ -16,14 +16,13 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
-import yaml
 from mcap.records import Channel, McapRecord, Message, Metadata, Schema
 from mcap.stream_reader import StreamReader
 
 from hexapod_doe.bag_file import DAMAGE
 from hexapod_doe.bag_writer import BagWriter
 from hexapod_doe.errors import BagError
-from hexapod_doe.rosbag2 import RUN_RECORD, OfferedQos, Topic, partial_path
+from hexapod_doe.rosbag2 import RUN_RECORD, Topic, offered_qos, partial_path
 
 SALVAGED = 'salvaged'
 """Value of the metadata key `status` in a bag that was recovered."""
@@ -108,11 +107,10 @@ class _Copy:
 
 
 def _topic(channel: Channel, schema: Schema) -> Topic:
-    profiles = yaml.safe_load(channel.metadata.get('offered_qos_profiles', '[]'))
     return Topic(
         channel.topic,
         schema.name,
-        tuple(OfferedQos.from_dict(profile) for profile in profiles),
+        offered_qos(channel.metadata.get('offered_qos_profiles', '')),
         definition=schema.data.decode(),
         type_hash=channel.metadata.get('topic_type_hash', ''),
     )

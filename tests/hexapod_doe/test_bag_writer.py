@@ -10,7 +10,7 @@ import pytest
 import yaml
 from hexapod_doe.bag_writer import BagWriter
 from hexapod_doe.errors import BagError
-from hexapod_doe.rosbag2 import OfferedQos, Topic
+from hexapod_doe.rosbag2 import OfferedQos, Topic, offered_qos
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
@@ -63,7 +63,7 @@ def test_channel_offers_what_metadata_yaml_offers(tmp_path):
         (channel,) = make_reader(stream).get_summary().channels.values()
     in_channel = yaml.safe_load(channel.metadata['offered_qos_profiles'])
     assert in_channel == topic['topic_metadata']['offered_qos_profiles']
-    assert tuple(map(OfferedQos.from_dict, in_channel)) == offered
+    assert offered_qos(in_channel) == offered
 
 
 def test_bag_has_its_name_only_when_it_is_whole(tmp_path, samples):

@@ -1,0 +1,165 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Node `player`: plays a bag, ours or rosbag2's, byte for byte, with its clock."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from hexapod_node.parameters import Parameter, declare
+from hexapod_node.raw_topics import message_class
+from hexapod_node.spin import run
+from hexapod_node.stamps import time_message
+from rclpy.clock import Clock as RclpyClock
+from rclpy.clock import ClockType
+from rclpy.duration import Duration
+from rclpy.node import Node
+from rclpy.parameter import Parameter as RclpyParameter
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rosgraph_msgs.msg import Clock
+from std_srvs.srv import Trigger
+
+from hexapod_doe.bag_file import BagFile, RawMessage
+from hexapod_doe.playback import Frame, Playback
+from hexapod_doe.rosbag2 import OfferedQos
+
+CLOCK_TOPIC = '/clock'
+CLOCK_TYPE = 'rosgraph_msgs/msg/Clock'
+# Longest that the end of playback waits until its readers have everything.
+_DRAIN = Duration(seconds=5)
+_IDLE_NS = 3_600_000_000_000
+
+PARAMETERS = (
+    Parameter('bag', '', 'Directory of the bag.'),
+    Parameter(
+        'rate', 1.0, 'Recorded seconds per second; 0 for as fast as possible.', range=(0.0, 1e6)
+    ),
+    Parameter('loop', False, 'Begin again at the end; /clock then jumps back.'),
+    Parameter('start', 0.0, 'Where to begin, from the first message.', unit='s', range=(0.0, 1e9)),
+    Parameter('paused', False, 'Hold before the first message.'),
+    Parameter(
+        'topics', '', 'Names to play, or their ends, separated by spaces; none for all of them.'
+    ),
+)
+
+
+class PlayerNode(Node):
+    """Publishes a bag's messages when they are due, and `/clock` after those of each instant.
+
+    A `/clock` in the bag is left out: there is one clock, the player's.
+    """
+
+    def __init__(self, parameter_overrides: Sequence[RclpyParameter] = ()) -> None:
+        """Open the bag.
+
+        Args:
+            parameter_overrides: values that stand in for the command line's.
+
+        Raises:
+            BagError: it cannot be played; the text says why.
+        """
+        super().__init__('player', parameter_overrides=list(parameter_overrides))
+        declare(self, PARAMETERS)
+        self.exit_status: int | None = None
+        self._bag = BagFile(str(self._value('bag')))
+        self._topics = self._selected()
+        self._clock_publisher = self.create_publisher(Clock, CLOCK_TOPIC, 10)
+        self._bag_publishers = {
+            name: self.create_publisher(
+                message_class(self._bag.types[name]), name, _qos(self._bag.qos[name])
+            )
+            for name in self._topics
+        }
+        self._playback = Playback(
+            self._messages,
+            rate=float(self._value('rate')),
+            loop=bool(self._value('loop')),
+            paused=bool(self._value('paused')),
+        )
+        self._played = 0
+        self.create_service(Trigger, '~/pause', self._on_pause)
+        self.create_service(Trigger, '~/resume', self._on_resume)
+        self.create_service(Trigger, '~/step', self._on_step)
+        steady = RclpyClock(clock_type=ClockType.STEADY_TIME)
+        self._timer = self.create_timer(0.0, self._on_due, clock=steady)
+
+    def _value(self, name: str) -> Any:
+        return self.get_parameter(name).value
+
+    def _selected(self) -> list[str]:
+        """Return the topics to play."""
+        names = str(self._value('topics')).split() or list(self._bag.types)
+        chosen = [self._bag.topic(name) for name in names]
+        return [name for name in chosen if self._bag.types[name] != CLOCK_TYPE]
+
+    def _messages(self) -> Iterator[RawMessage]:
+        start_ns = self._bag.start_ns + round(float(self._value('start')) * 1e9)
+        return self._bag.messages(self._topics, start_ns)
+
+    def _on_due(self) -> None:
+        """Publish what is due, then sleep until the next is."""
+        wait_ns = self._playback.wait_ns(time.monotonic_ns())
+        if wait_ns == 0:
+            self._publish(self._playback.take())
+            wait_ns = self._playback.wait_ns(time.monotonic_ns())
+        self._timer.timer_period_ns = _IDLE_NS if wait_ns is None else max(1, wait_ns)
+        self._timer.reset()
+
+    def _publish(self, frame: Frame) -> None:
+        for message in frame.messages:
+            self._bag_publishers[message.topic].publish(message.data)
+        self._clock_publisher.publish(Clock(clock=time_message(frame.time_ns)))
+        self._played += len(frame.messages)
+        if self._playback.finished:
+            for publisher in self._bag_publishers.values():
+                publisher.wait_for_all_acked(_DRAIN)
+            self.get_logger().info(f'played {self._played} messages of {self._bag.path}')
+            self.exit_status = 0
+
+    def _on_pause(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """Hold before the next instant."""
+        self._playback.pause(time.monotonic_ns())
+        response.success = True
+        return response
+
+    def _on_resume(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """Go on from where it was held."""
+        self._playback.resume()
+        self._on_due()
+        response.success = True
+        return response
+
+    def _on_step(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """Publish all messages of the next instant, while paused."""
+        try:
+            frame = self._playback.step()
+        except ValueError as error:
+            response.message = str(error)
+            return response
+        self._publish(frame)
+        response.success = True
+        response.message = f'{frame.time_ns * 1e-9:.9f} s, {len(frame.messages)} messages'
+        return response
+
+
+def _qos(offered: Sequence[OfferedQos]) -> QoSProfile:
+    """Offer what every recorded publisher offered, and keep all of it until it is read."""
+    reliable = all(profile.reliability == 'reliable' for profile in offered)
+    latched = bool(offered) and all(p.durability == 'transient_local' for p in offered)
+    return QoSProfile(
+        reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
+        history=HistoryPolicy.KEEP_ALL,
+    )
+
+
+def main() -> None:
+    """Run the node until the bag ends or a signal comes."""
+    run(PlayerNode)
+
+
+if __name__ == '__main__':
+    main()

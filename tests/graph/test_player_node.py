@@ -1,0 +1,187 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The player on a live graph: the recorded bytes, their clock, their timing, its services."""
+
+import statistics
+import subprocess
+import sys
+import time
+from array import array
+from pathlib import Path
+
+import pytest
+from hexapod_doe.bag_writer import BagWriter
+from hexapod_doe.player_node import PlayerNode
+from hexapod_doe.rosbag2 import OfferedQos, Topic
+from hexapod_node.qos import RECORD
+from hexapod_node.raw_topics import subscribe_raw
+from rclpy.parameter import Parameter
+from rclpy.serialization import serialize_message
+from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.typesys import Stores, get_typestore
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
+from std_srvs.srv import Trigger
+
+pytestmark = pytest.mark.graph
+
+PERIOD_NS = 25_000_000
+TYPES = {'/w0/joint_states': 'sensor_msgs/msg/JointState', '/w0/clock': 'rosgraph_msgs/msg/Clock'}
+
+
+def joints(stamp_ns: int) -> bytes:
+    values = array('d', [stamp_ns * 1e-9])
+    message = JointState(name=['a'], position=values, velocity=values, effort=values)
+    message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp_ns, 1_000_000_000)
+    return serialize_message(message)
+
+
+@pytest.fixture
+def bag(tmp_path) -> Path:
+    """A bag of 40 periods that begins at 100 s, with a clock of its own."""
+    with BagWriter(tmp_path / 'run', {'run_id': 'run'}) as writer:
+        for name, kind in TYPES.items():
+            writer.add_topic(Topic(name, kind))
+        for k in range(40):
+            stamp = 100_000_000_000 + k * PERIOD_NS
+            writer.write('/w0/joint_states', joints(stamp), stamp)
+            writer.write('/w0/clock', serialize_message(Clock()), stamp)
+    return tmp_path / 'run'
+
+
+class Listener:
+    """Notes what the player publishes, and when it came."""
+
+    def __init__(self, graph, topics) -> None:
+        self.heard: list[tuple[str, bytes, float]] = []
+        self.clock: list[int] = []
+        node = graph.nodes[0]
+        for name, kind in topics.items():
+            subscribe_raw(node, name, kind, self._noting(name), RECORD)
+        node.create_subscription(Clock, '/clock', self._on_clock, RECORD)
+
+    def _noting(self, name):
+        return lambda data: self.heard.append((name, data, time.monotonic()))
+
+    def _on_clock(self, message) -> None:
+        self.clock.append(message.clock.sec * 1_000_000_000 + message.clock.nanosec)
+
+
+def add_player(graph, bag, **parameters) -> PlayerNode:
+    """Add a player, paused unless told otherwise."""
+    values = {'bag': str(bag), 'paused': True} | parameters
+    overrides = [Parameter(name, value=value) for name, value in values.items()]
+    return graph.add(PlayerNode(parameter_overrides=overrides))
+
+
+def add_heard_player(graph, bag, **parameters) -> PlayerNode:
+    """Add a player whose listener is matched."""
+    player = add_player(graph, bag, **parameters)
+    publishers = (player._clock_publisher, *player._bag_publishers.values())
+    graph.until(lambda: all(publisher.get_subscription_count() for publisher in publishers))
+    return player
+
+
+def ask(graph, verb):
+    return graph.call(Trigger, f'/player/{verb}', Trigger.Request())
+
+
+def test_bytes_and_clock_come_back(graph, bag):
+    listener = Listener(graph, {'/w0/joint_states': TYPES['/w0/joint_states']})
+    player = add_heard_player(graph, bag, rate=0.0)
+    assert ask(graph, 'resume').success
+    graph.until(lambda: player.exit_status == 0 and len(listener.clock) == 40)
+    stamps = [100_000_000_000 + k * PERIOD_NS for k in range(40)]
+    assert [data for _, data, _ in listener.heard] == [joints(stamp) for stamp in stamps]
+    assert listener.clock == stamps
+
+
+def test_recorded_clock_is_left_out(graph, bag):
+    player = add_player(graph, bag)
+    assert player.count_publishers('/w0/clock') == 0
+    assert player.count_publishers('/w0/joint_states') == 1
+
+
+def test_real_time_is_kept_within_2_ms(graph, bag):
+    listener = Listener(graph, {'/w0/joint_states': TYPES['/w0/joint_states']})
+    player = add_heard_player(graph, bag)
+    ask(graph, 'resume')
+    graph.until(lambda: player.exit_status == 0 and len(listener.heard) == 40)
+    times = [came for _, _, came in listener.heard]
+    errors = [abs(came - times[0] - k * PERIOD_NS * 1e-9) for k, came in enumerate(times)]
+    assert statistics.median(errors) < 2e-3
+
+
+def test_start_and_topics(graph, bag):
+    listener = Listener(graph, {'/w0/joint_states': TYPES['/w0/joint_states']})
+    player = add_heard_player(graph, bag, rate=0.0, start=0.5, topics='joint_states')
+    ask(graph, 'resume')
+    graph.until(lambda: player.exit_status == 0 and len(listener.heard) == 20)
+    assert listener.heard[0][1] == joints(100_500_000_000)
+
+
+def test_step_pause_and_loop(graph, bag):
+    listener = Listener(graph, {'/w0/joint_states': TYPES['/w0/joint_states']})
+    player = add_heard_player(graph, bag, rate=10.0, loop=True)
+    response = ask(graph, 'step')
+    assert (response.success, response.message) == (True, '100.000000000 s, 1 messages')
+    graph.until(lambda: listener.clock == [100_000_000_000])
+    ask(graph, 'resume')
+    assert 'expected it to be paused' in ask(graph, 'step').message
+    graph.until(lambda: len(listener.clock) > 50)
+    ask(graph, 'pause')
+    graph.until(lambda: len(listener.clock) == player._played)
+    assert listener.clock[40] == listener.clock[0]
+    assert player.exit_status is None
+
+
+def test_bag_of_rosbag2_with_its_qos(graph, tmp_path):
+    # Written by another library in the layout of rosbag2, version 8: policies are numbers.
+    store = get_typestore(Stores.ROS2_JAZZY)
+    with Writer(tmp_path / 'talk', version=8, storage_plugin=StoragePlugin.MCAP) as writer:
+        connection = writer.add_connection('/chatter', 'std_msgs/msg/String', typestore=store)
+        raw = store.serialize_cdr(
+            store.types['std_msgs/msg/String'](data='hi'), connection.msgtype
+        )
+        writer.write(connection, 1_700_000_000_000_000_000, raw)
+    listener = Listener(graph, {'/chatter': 'std_msgs/msg/String'})
+    player = add_heard_player(graph, tmp_path / 'talk')
+    ask(graph, 'resume')
+    graph.until(lambda: player.exit_status == 0 and listener.heard)
+    assert listener.heard[0][1] == bytes(raw)
+    assert listener.clock == [1_700_000_000_000_000_000]
+
+
+@pytest.mark.parametrize('offered', [('best_effort', 'volatile'), ('reliable', 'transient_local')])
+def test_publishers_offer_what_was_recorded(graph, tmp_path, offered):
+    reliability, durability = offered
+    qos = OfferedQos(reliability=reliability, durability=durability)
+    with BagWriter(tmp_path / 'b', {}) as writer:
+        writer.add_topic(Topic('/imu', 'sensor_msgs/msg/Imu', (qos,)))
+    player = add_player(graph, tmp_path / 'b')
+    (info,) = player.get_publishers_info_by_topic('/imu')
+    assert info.qos_profile.reliability.name.lower() == reliability
+    assert info.qos_profile.durability.name.lower() == durability
+
+
+@pytest.mark.system
+@pytest.mark.parametrize('fault', ['nowhere', 'empty', 'cut', 'foreign'])
+def test_unusable_bag_is_one_line_and_status_1(bag, fault):
+    if fault == 'nowhere':
+        bag = bag.with_name('nowhere')
+    elif fault == 'foreign':
+        (bag / 'metadata.yaml').write_text('x: 1')
+    else:
+        file = bag / 'run_0.mcap'
+        file.write_bytes(b'' if fault == 'empty' else file.read_bytes()[:-20])
+    done = subprocess.run(
+        [sys.executable, '-m', 'hexapod_doe.player_node', '--ros-args', '-p', f'bag:={bag}'],
+        capture_output=True,
+        text=True,
+        timeout=30,
+    )
+    assert done.returncode == 1
+    assert done.stderr.count('\n') == 1
+    assert f'bag {bag}: ' in done.stderr
+    assert 'expected' in done.stderr
