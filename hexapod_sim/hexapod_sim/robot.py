@@ -23,6 +23,7 @@ ODOM_FRAME = 'odom'
 BASE_FRAME = 'base_link'
 IMU_FRAME = 'imu_link'
 HEIGHT_FRAME = 'height_link'
+# Origin at the foot's centre; axes parallel to odom, so that z is the floor's normal.
 FOOT_FRAMES = tuple(f'{leg}_foot' for leg in LEGS)
 
 # Timing. One control period carries SUBSTEPS joint targets, TARGET_PERIOD_NS apart.
@@ -64,7 +65,7 @@ HIP_YAWS = np.array(
 # Half sizes of the body's box [m].
 BODY_HALF_SIZE = (0.125, 0.062, 0.022)
 
-# Masses [kg]. A servo of this class weighs 55 g, two sit between coxa and femur.
+# Masses [kg]. Each leg carries three servos of 55 g, and brackets.
 BODY_MASS = 1.08
 COXA_MASS = 0.06
 FEMUR_MASS = 0.10
@@ -79,7 +80,7 @@ NO_LOAD_SPEED = 6.2
 # slope 16 of the AX series, 16 steps of 0.29 degrees).
 PROPORTIONAL_BAND = 0.082
 SERVO_KP = TORQUE_LIMIT / PROPORTIONAL_BAND
-# The back-EMF of a DC motor falls linearly from stall torque to zero at the no-load speed.
+# Back-EMF: the torque of a DC motor falls linearly from stall to zero at the no-load speed.
 SERVO_DAMPING = TORQUE_LIMIT / NO_LOAD_SPEED
 # Rotor inertia seen through the gear [kg m^2]: 254^2 times about 1e-7 kg m^2.
 SERVO_ARMATURE = 0.0065

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from hexapod_sim.simulation import Simulation
 
 # Sensor names of hexapod.xml behind each block; the model lists a block's sensors in a row.
+# Joint torques are the drive's, what AX servos report as present load; back-EMF acts apart.
 _BLOCKS = {
     'joint_angles': tuple(f'{joint}_angle' for joint in robot.JOINTS),
     'joint_velocities': tuple(f'{joint}_velocity' for joint in robot.JOINTS),

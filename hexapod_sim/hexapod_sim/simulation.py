@@ -13,8 +13,9 @@ from hexapod_sim import robot, sensors
 
 _MODEL_PATH = Path(__file__).with_name('hexapod.xml')
 _KEYFRAME = 'standing'
-# The servos give under the weight: after this many control periods the body has come to rest.
-_SETTLE_PERIODS = 80
+# The servos give under the weight and the feet creep outwards: after this many control periods
+# (10 s, 30 ms of computing) nothing moves faster than 1e-5 m/s or rad/s.
+_SETTLE_PERIODS = 400
 # Sum of squared generalised velocities [(m/s)^2 and (rad/s)^2] that no working servo reaches
 # (all 18 at ten times their no-load speed); beyond it, or at NaN, the state is lost.
 _SQUARED_SPEED_LIMIT = len(robot.JOINTS) * (10 * robot.NO_LOAD_SPEED) ** 2

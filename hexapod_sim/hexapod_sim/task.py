@@ -43,7 +43,7 @@ class TaskConfig:
     """Angle from upright, or from the line's direction, that costs one [rad]."""
     yaw_share: float = 1.0
     """How much of the squared yaw enters the orientation penalty: 1 as roll and pitch, 0 none."""
-    walking_height: float = 0.134
+    walking_height: float = 0.1335
     """Mean height of base_link in the constant gait, measured [m]."""
     height_scale: float = 0.3
     """Share of the walking height whose error costs one."""

@@ -1,0 +1,304 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The line task: starts, reward terms, ends of an episode and reproducibility."""
+
+import dataclasses
+import math
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+from hexapod_sim.sensors import CHANNEL_READERS, read
+from hexapod_sim.task import (
+    TERM_NAMES,
+    LineTask,
+    TaskConfig,
+    closeness_term,
+    episode_seed,
+    failure_cause,
+    height_penalty,
+    orientation_penalty,
+    velocity_term,
+)
+
+from hexapod_sim import robot
+
+NEUTRAL = np.tile(robot.NEUTRAL_POSE, (robot.SUBSTEPS, 1))
+CONFIG = TaskConfig()
+
+
+@pytest.fixture
+def task() -> LineTask:
+    return LineTask()
+
+
+def shake(seed: int, periods: int) -> np.ndarray:
+    rng = np.random.default_rng(seed)
+    return NEUTRAL + rng.uniform(-0.2, 0.2, (periods, robot.SUBSTEPS, len(robot.JOINTS)))
+
+
+@pytest.mark.parametrize(
+    ('run_seed', 'episode', 'expected'),
+    [
+        # numpy promises the stream of SeedSequence for ever; the values pin our use of it.
+        (0, 0, 15793235383387715774),
+        (1, 0, 7434755675892716031),
+        (1, 1, 77803131892610477),
+        (2**63, 999, 15361160318992074610),
+    ],
+)
+def test_episode_seed_reference_values(run_seed: int, episode: int, expected: int) -> None:
+    assert episode_seed(run_seed, episode) == expected
+
+
+def test_episode_seeds_do_not_collide() -> None:
+    seeds = {episode_seed(run, episode) for run in range(40) for episode in range(50)}
+    assert len(seeds) == 2000
+    assert all(0 <= seed < 2**64 for seed in seeds)
+
+
+@pytest.mark.parametrize(
+    ('velocity', 'expected'),
+    [(0.0, 0.0), (0.15, 0.5), (0.3, 1.0), (0.45, 1.5), (0.6, 1.5), (-0.3, -1.0), (-1.0, -1.0)],
+)
+def test_velocity_term(velocity: float, expected: float) -> None:
+    assert velocity_term(velocity, CONFIG) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize('offset', [-2.0, -0.5, 0.0, 0.25, 1.5])
+def test_closeness_falls_by_the_metre_on_both_sides(offset: float) -> None:
+    assert closeness_term(offset) == 1.0 - abs(offset)
+
+
+def test_orientation_penalty() -> None:
+    scale = CONFIG.orientation_scale
+    assert orientation_penalty(0, 0, 0, CONFIG) == 0
+    # Each of the three angles at the scale costs one; together they are clipped at two.
+    for angles in ((scale, 0, 0), (0, -scale, 0), (0, 0, scale)):
+        assert orientation_penalty(*angles, CONFIG) == pytest.approx(1.0)
+    assert orientation_penalty(scale, scale, scale, CONFIG) == 2.0
+    free = dataclasses.replace(CONFIG, yaw_share=0.0)
+    assert orientation_penalty(0, 0, 3.0, free) == 0
+
+
+def test_height_penalty() -> None:
+    h0 = CONFIG.walking_height
+    assert height_penalty(h0, CONFIG) == 0
+    # A relative error of height_scale (0.3) costs one, whatever its sign; clipped at two.
+    assert height_penalty(1.3 * h0, CONFIG) == pytest.approx(1.0)
+    assert height_penalty(0.7 * h0, CONFIG) == pytest.approx(1.0)
+    assert height_penalty(0.0, CONFIG) == 2.0
+
+
+def test_every_reasonable_step_is_positive() -> None:
+    rng = np.random.default_rng(0)
+    for _ in range(2000):
+        penalties = CONFIG.orientation_weight * orientation_penalty(
+            *rng.uniform(-math.pi, math.pi, 3), CONFIG
+        ) + CONFIG.height_weight * height_penalty(rng.uniform(0, 0.3), CONFIG)
+        reward = (
+            CONFIG.velocity_weight * velocity_term(rng.uniform(0, 1), CONFIG)
+            + CONFIG.closeness_weight * closeness_term(rng.uniform(-0.999, 0.999))
+            - penalties
+            + CONFIG.alive_reward
+        )
+        assert reward > 0
+
+
+def test_reset_earns_nothing_and_starts_beside_the_line(task: LineTask) -> None:
+    outcome = task.reset(5)
+    assert (outcome.step, outcome.reward, outcome.cause) == (0, 0.0, '')
+    assert not outcome.terminated
+    assert not outcome.truncated
+    assert tuple(outcome.terms) == TERM_NAMES
+    x, y, _, *angles = task.simulation.pose()
+    assert x == 0.0
+    assert y == task.line_offset
+    np.testing.assert_allclose(angles, 0.0, atol=1e-12)
+
+
+def test_start_offsets_fill_the_range_on_both_sides(task: LineTask) -> None:
+    offsets = []
+    for seed in range(200):
+        task.reset(episode_seed(3, seed))
+        offsets.append(task.line_offset)
+    assert -0.5 <= min(offsets) < -0.45
+    assert 0.45 < max(offsets) <= 0.5
+    # Mean of 200 uniform numbers on +-0.5: standard error 0.02; four of them.
+    assert abs(np.mean(offsets)) < 0.08
+
+
+def test_start_offset_is_the_seeds(task: LineTask) -> None:
+    task.reset(11)
+    # Generator(PCG64(11)).uniform, as numpy documents it.
+    assert task.line_offset == np.random.default_rng(11).uniform(-0.5, 0.5)
+
+
+def test_line_offset_is_positive_to_the_left(task: LineTask) -> None:
+    task.reset(0)
+    task.simulation.reset(0.3)
+    assert task.line_offset == pytest.approx(0.3)
+    task.line_y = 0.5
+    assert task.line_offset == pytest.approx(-0.2)
+    assert task.simulation.data.mocap_pos[0, 1] == 0.5
+
+
+def test_reset_puts_the_line_back() -> None:
+    task = LineTask(TaskConfig(line_y=0.25, start_offset=0.0))
+    task.reset(0)
+    task.line_y = -1.0
+    task.reset(0)
+    assert task.line_y == 0.25
+    assert task.line_offset == 0.0
+    assert task.simulation.data.mocap_pos[0, 1] == 0.25
+
+
+def test_terms_sum_to_the_reward_and_match_the_pose(task: LineTask) -> None:
+    task.reset(1)
+    x_before = 0.0
+    for step, targets in enumerate(shake(1, 40), start=1):
+        outcome = task.advance(targets)
+        x, y, height, roll, pitch, yaw = task.simulation.pose()
+        assert outcome.step == step
+        assert outcome.reward == sum(outcome.terms.values())
+        assert outcome.terms == {
+            'velocity': velocity_term((x - x_before) / 0.025, CONFIG),
+            'closeness': closeness_term(y),
+            'orientation': -0.5 * orientation_penalty(roll, pitch, yaw, CONFIG),
+            'height': -0.5 * height_penalty(height, CONFIG),
+            'alive': 2.0,
+        }
+        x_before = x
+
+
+def test_weights_scale_their_terms() -> None:
+    weights = {
+        'velocity_weight': 3.0,
+        'closeness_weight': 5.0,
+        'orientation_weight': 7.0,
+        'height_weight': 11.0,
+        'alive_reward': 13.0,
+    }
+    plain, weighted = LineTask(), LineTask(TaskConfig(**weights))
+    plain.reset(2)
+    weighted.reset(2)
+    targets = shake(2, 1)[0]
+    base, scaled = plain.advance(targets).terms, weighted.advance(targets).terms
+    defaults = dataclasses.asdict(CONFIG)
+    for term, (name, weight) in zip(TERM_NAMES, weights.items(), strict=True):
+        assert scaled[term] == pytest.approx(base[term] * weight / defaults[name])
+
+
+def test_standing_still_lasts_to_the_time_limit() -> None:
+    task = LineTask(TaskConfig(time_limit_steps=20))
+    task.reset(0)
+    outcomes = [task.advance(NEUTRAL) for _ in range(20)]
+    assert not any(outcome.truncated or outcome.terminated for outcome in outcomes[:-1])
+    assert outcomes[-1].truncated
+    assert not outcomes[-1].terminated
+    assert outcomes[-1].cause == 'time_limit'
+    with pytest.raises(RuntimeError, match=r'expected reset\(\) before advance'):
+        task.advance(NEUTRAL)
+
+
+def test_default_time_limit_is_fifteen_seconds() -> None:
+    assert CONFIG.time_limit_steps * robot.CONTROL_PERIOD_NS == 15_000_000_000
+
+
+def test_advance_before_reset_is_refused() -> None:
+    with pytest.raises(RuntimeError, match='no episode runs'):
+        LineTask().advance(NEUTRAL)
+
+
+@pytest.mark.parametrize(
+    ('state', 'cause'),
+    [
+        ((0.0, 0.0, 0.13, 0.0), ''),
+        ((1.1, 0.0, 0.13, 0.0), 'flipped'),
+        ((0.0, -1.1, 0.13, 0.0), 'flipped'),
+        ((0.0, 0.0, 0.04, 0.0), 'collapsed'),
+        ((0.0, 0.0, 0.13, -2.1), 'strayed'),
+        ((0.0, 0.0, 0.13, 2.1), 'strayed'),
+        ((0.9, 0.9, 0.06, 1.9), ''),
+    ],
+)
+def test_failure_causes(state: tuple[float, float, float, float], cause: str) -> None:
+    assert failure_cause(*state, CONFIG) == cause
+
+
+@pytest.mark.parametrize(
+    ('pose', 'cause'),
+    [
+        ([0, 0, 0.3, math.cos(0.8), math.sin(0.8), 0, 0], 'flipped'),
+        ([0, 0, 0.3, math.cos(0.8), 0, math.sin(0.8), 0], 'flipped'),
+        ([0, -2.3, 0.13, 1, 0, 0, 0], 'strayed'),
+    ],
+)
+def test_failure_terminates_the_episode(task: LineTask, pose: list[float], cause: str) -> None:
+    task.reset(0)
+    task.simulation.data.qpos[:7] = pose
+    mujoco.mj_forward(task.simulation.model, task.simulation.data)
+    outcome = task.advance(NEUTRAL)
+    assert (outcome.terminated, outcome.truncated, outcome.cause) == (True, False, cause)
+    with pytest.raises(RuntimeError, match='no episode runs'):
+        task.advance(NEUTRAL)
+
+
+def test_folding_the_legs_up_collapses_the_robot(task: LineTask) -> None:
+    task.reset(0)
+    folded = NEUTRAL.copy()
+    folded[:, 1::3] = robot.LEG_UPPER[1]
+    outcome = task.advance(folded)
+    while not outcome.terminated:
+        outcome = task.advance(folded)
+    assert outcome.cause == 'collapsed'
+
+
+def test_failure_at_the_time_limit_is_a_failure() -> None:
+    task = LineTask(TaskConfig(time_limit_steps=1, max_offset=0.0))
+    task.reset(0)
+    outcome = task.advance(NEUTRAL)
+    assert (outcome.terminated, outcome.truncated, outcome.cause) == (True, False, 'strayed')
+
+
+def test_divergence_terminates_with_readings_that_can_be_used(
+    task: LineTask, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)  # MuJoCo leaves its log of warnings where it runs
+    task.reset(4)
+    offset = task.line_offset
+    task.simulation.data.qvel[0] = math.nan
+    mujoco.mj_forward(task.simulation.model, task.simulation.data)
+    outcome = task.advance(NEUTRAL)
+    assert (outcome.terminated, outcome.cause, outcome.reward) == (True, 'diverged', 0.0)
+    assert sum(outcome.terms.values()) == 0.0
+    assert task.line_offset == offset
+    for channel, value in read(task.simulation, CHANNEL_READERS).items():
+        assert np.isfinite(value).all(), channel
+
+
+def test_bad_targets_leave_the_episode_untouched(task: LineTask) -> None:
+    task.reset(0)
+    with pytest.raises(ValueError, match='expected finite angles'):
+        task.advance(np.full((5, 18), math.nan))
+    with pytest.raises(ValueError, match=r'expected shape \(5, 18\)'):
+        task.advance(NEUTRAL[0])
+    assert task.advance(NEUTRAL).step == 1
+
+
+def test_same_seed_and_targets_give_the_same_bits_after_a_dirty_reset() -> None:
+    fresh, used = LineTask(), LineTask()
+    used.reset(9)
+    for targets in shake(9, 30):
+        used.advance(targets)
+    used.line_y = 0.6
+    fresh.reset(7)
+    used.reset(7)
+    for targets in shake(7, 50):
+        assert fresh.advance(targets) == used.advance(targets)
+        np.testing.assert_array_equal(
+            fresh.simulation.data.sensordata, used.simulation.data.sensordata
+        )
+        assert fresh.line_offset == used.line_offset
