@@ -235,7 +235,7 @@ def test_forces_accelerate_the_body(standing: Simulation) -> None:
         mujoco.mj_subtreeVel(model, probe)
         momentum.append(robot.TOTAL_MASS * probe.subtree_linvel[0])
     rate = (momentum[1] - momentum[0]) / (2 * step)
-    expected = rate + [0, 0, robot.TOTAL_MASS * GRAVITY]
+    expected = rate + np.array([0, 0, robot.TOTAL_MASS * GRAVITY])
     np.testing.assert_allclose(wrench.sum(axis=0), expected, atol=0.02)
 
 
