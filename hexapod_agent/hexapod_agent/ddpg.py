@@ -80,19 +80,15 @@ class Ddpg:
         self._actor_target_parameters = _drawn_with_target(self.actor_parameters, generator)
         self._critic_target_parameters = _drawn_with_target(self.critic_parameters, generator)
         self._actor_optimizer = ClippedAdam(
-            self.actor_parameters, actor.learning_rate, actor.gradient_threshold
+            self.actor_parameters, actor.learning_rate, actor.l2, actor.gradient_threshold
         )
         self._critic_optimizer = ClippedAdam(
-            self.critic_parameters, critic.learning_rate, critic.gradient_threshold
+            self.critic_parameters, critic.learning_rate, critic.l2, critic.gradient_threshold
         )
 
         self._policy = Actor(self.actor_parameters, 1)
-        self._actor = Actor(
-            self.actor_parameters, batch_size, self._actor_optimizer.gradients, actor.l2
-        )
-        self._critic = Critic(
-            self.critic_parameters, batch_size, self._critic_optimizer.gradients, critic.l2
-        )
+        self._actor = Actor(self.actor_parameters, batch_size, self._actor_optimizer.gradients)
+        self._critic = Critic(self.critic_parameters, batch_size, self._critic_optimizer.gradients)
         self._target_actor = Actor(self._actor_target_parameters, batch_size)
         self._target_critic = Critic(self._critic_target_parameters, batch_size)
 

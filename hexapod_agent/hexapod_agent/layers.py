@@ -21,17 +21,14 @@ class Dense:
         gradients: Stack of the same layout that `backward` fills; None where it is never called.
         name: The layer's name.
         batch: Rows of x.
-        l2: Factor of the L2 term in the gradient of the weight.
     """
 
     def __init__(
         self, parameters: ParameterStack, gradients: ParameterStack | None, name: str, batch: int,
-        l2: float = 0.0,
     ) -> None:  # fmt: skip
         self.weight = parameters.weight(f'{name}.weight')
         self.bias = parameters.bias(f'{name}.bias')
         self._transposed = self.weight.mT
-        self._l2 = l2
         single = parameters.agents == 1
         self._product = torch.mm if single else torch.bmm
         self._add_product = torch.addmm if single else torch.baddbmm
@@ -55,8 +52,8 @@ class Dense:
         return self._add_product(y, x, self._transposed, out=y).add_(self.bias)
 
     def backward(self, x: Tensor, y_gradient: Tensor) -> None:
-        """Write the gradients of weight and bias: dW = dyᵀ x + l2 W, db = sum of dy."""
-        self._add_product(self.weight, y_gradient.mT, x, beta=self._l2, out=self._weight_gradient)
+        """Write the gradients of weight and bias: dW = dyᵀ x, db = sum of dy."""
+        self._product(y_gradient.mT, x, out=self._weight_gradient)
         torch.sum(y_gradient, dim=-2, keepdim=self._keep_bias_dim, out=self._bias_gradient)
 
     def backward_input(self, y_gradient: Tensor) -> Tensor:

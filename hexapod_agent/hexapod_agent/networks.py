@@ -39,7 +39,6 @@ class Actor:
         parameters: Layout of `Actor.shapes`.
         batch: Observations per pass.
         gradients: Filled by `backward`; None for a pass that never goes back.
-        l2: L2 factor of the weights.
     """
 
     @staticmethod
@@ -54,10 +53,9 @@ class Actor:
 
     def __init__(
         self, parameters: ParameterStack, batch: int, gradients: ParameterStack | None = None,
-        l2: float = 0.0,
     ) -> None:  # fmt: skip
         self._layers = [
-            Dense(parameters, gradients, name.removesuffix('.weight'), batch, l2)
+            Dense(parameters, gradients, name.removesuffix('.weight'), batch)
             for name in parameters.shapes
             if name.endswith('.weight')
         ]
@@ -105,7 +103,6 @@ class Critic:
         parameters: Layout of `Critic.shapes`; tells which merge it is.
         batch: Pairs of observation and action per pass.
         gradients: Filled by `backward`; None for a pass that never goes back.
-        l2: L2 factor of the weights.
     """
 
     @staticmethod
@@ -122,15 +119,14 @@ class Critic:
 
     def __init__(
         self, parameters: ParameterStack, batch: int, gradients: ParameterStack | None = None,
-        l2: float = 0.0,
     ) -> None:  # fmt: skip
         self._observation = [
-            Dense(parameters, gradients, name.removesuffix('.weight'), batch, l2)
+            Dense(parameters, gradients, name.removesuffix('.weight'), batch)
             for name in parameters.shapes
             if name.startswith('observation') and name.endswith('.weight')
         ]
-        self._action = Dense(parameters, gradients, 'action', batch, l2)
-        self._output = Dense(parameters, gradients, 'output', batch, l2)
+        self._action = Dense(parameters, gradients, 'action', batch)
+        self._output = Dense(parameters, gradients, 'output', batch)
         width = self._action.output.shape[-1]
         self._append = self._output.weight.shape[-1] == 2 * width
         shape = (*self._action.output.shape[:-1], self._output.weight.shape[-1])

@@ -1,22 +1,21 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Gradient step of one network as MATLAB's trainer takes it: clip each array, then Adam.
-
-The L2 term is already part of the gradient (`layers.Dense.backward`), so that the norm which is
-compared with the threshold includes it.
-"""
-
-from copy import deepcopy
-from typing import Any
+"""Gradient step of one network as MATLAB's trainer takes it: L2 term, clipping, Adam."""
 
 import torch
+from torch import Tensor
+from torch.optim.adam import adam
 
 from hexapod_agent.parameters import ParameterStack
+
+_DECAY_MEAN, _DECAY_SQUARE, _EPSILON = 0.9, 0.999, 1e-8
 
 
 class ClippedAdam:
     """Adam behind a threshold on the L2 norm of each array's gradient, for each agent apart.
+
+    The L2 term l2 W is added to the gradients of weights before their norms are taken.
 
     Attributes:
         gradients: Stack to fill before `step`.
@@ -24,28 +23,61 @@ class ClippedAdam:
     Args:
         parameters: What is optimised.
         learning_rate: Adam's step size.
+        l2: Factor of the L2 term.
         threshold: Largest norm of an array's gradient; a longer one is scaled down to it.
     """
 
-    def __init__(self, parameters: ParameterStack, learning_rate: float, threshold: float) -> None:
+    def __init__(
+        self, parameters: ParameterStack, learning_rate: float, l2: float, threshold: float
+    ) -> None:
         self.gradients = parameters.like()
+        self._learning_rate = learning_rate
+        self._l2 = l2
         self._threshold = threshold
-        parameter = torch.nn.Parameter(parameters.flat, requires_grad=False)
-        parameter.grad = self.gradients.flat
-        self._adam = torch.optim.Adam([parameter], lr=learning_rate, fused=True)
+        self._flat = parameters.flat
+        self._weights = parameters.flat_weights
+        self._weight_gradients = self.gradients.flat_weights
+        arrays = self.gradients.arrays.values()
+        self._norms = self._flat.new_zeros(len(arrays), parameters.agents)
+        self._clipped = [
+            (array, tuple(range(1, array.ndim)), norm.view(-1, *[1] * (array.ndim - 1)))
+            for array, norm in zip(arrays, self._norms, strict=True)
+        ]
+        self._mean = torch.zeros_like(self._flat)
+        self._square = torch.zeros_like(self._flat)
+        self._steps = torch.zeros(())
 
     def step(self) -> None:
-        """Clip the gradients in place and move the parameters."""
-        for array in self.gradients.arrays.values():
-            dims = tuple(range(1, array.ndim))
-            norm = torch.linalg.vector_norm(array, dim=dims, keepdim=True)
-            array.mul_(self._threshold / norm.clamp_(min=self._threshold))
-        self._adam.step()
+        """Regularise and clip the gradients in place, and move the parameters."""
+        self._weight_gradients.add_(self._weights, alpha=self._l2)
+        for array, dims, norm in self._clipped:
+            torch.linalg.vector_norm(array, dim=dims, keepdim=True, out=norm)
+        # scale = threshold / max(norm, threshold)
+        self._norms.clamp_(min=self._threshold).reciprocal_().mul_(self._threshold)
+        for array, _, scale in self._clipped:
+            array.mul_(scale)
+        adam(
+            [self._flat],
+            [self.gradients.flat],
+            [self._mean],
+            [self._square],
+            [],
+            [self._steps],
+            fused=True,
+            amsgrad=False,
+            beta1=_DECAY_MEAN,
+            beta2=_DECAY_SQUARE,
+            lr=self._learning_rate,
+            weight_decay=0.0,
+            eps=_EPSILON,
+            maximize=False,
+        )
 
-    def state_dict(self) -> dict[str, Any]:
+    def state_dict(self) -> dict[str, Tensor]:
         """Moments and step count."""
-        return self._adam.state_dict()
+        return {'mean': self._mean, 'square': self._square, 'steps': self._steps}
 
-    def load_state_dict(self, state: dict[str, Any]) -> None:
-        """Take over a copy of what `state_dict` gave."""
-        self._adam.load_state_dict(deepcopy(state))
+    def load_state_dict(self, state: dict[str, Tensor]) -> None:
+        """Take over what `state_dict` gave."""
+        for name, value in self.state_dict().items():
+            value.copy_(state[name])

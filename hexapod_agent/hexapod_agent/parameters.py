@@ -19,7 +19,9 @@ class ParameterStack:
     """All arrays of one network for `agents` agents.
 
     Attributes:
-        flat: Tensor (agents, P). Numbers between two arrays are padding, always 0.
+        flat: Tensor (agents, P), weights first, then biases. Numbers between two arrays are
+            padding, always 0.
+        flat_weights: The part of it that holds the weights.
         arrays: Views (agents, *shape) by name; two-dimensional shapes (out, in) are weights.
     """
 
@@ -30,14 +32,17 @@ class ParameterStack:
         self.shapes = dict(shapes)
         self.agents = agents
         offsets = {}
-        size = 0
-        for name, shape in self.shapes.items():
+        size = weights_size = 0
+        for name, shape in sorted(self.shapes.items(), key=lambda item: -len(item[1])):
             offsets[name] = size
             size += -(-math.prod(shape) // _ALIGNMENT) * _ALIGNMENT
+            if len(shape) == 2:
+                weights_size = size
         self.flat = torch.zeros(agents, size, dtype=dtype)
+        self.flat_weights = self.flat[:, :weights_size]
         self.arrays = {
-            name: self.flat[:, offset : offset + math.prod(shape)].unflatten(1, shape)
-            for (name, shape), offset in zip(self.shapes.items(), offsets.values(), strict=True)
+            name: self.flat[:, offsets[name] :][:, : math.prod(shape)].unflatten(1, shape)
+            for name, shape in self.shapes.items()
         }
 
     def like(self) -> 'ParameterStack':

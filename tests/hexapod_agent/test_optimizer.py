@@ -11,7 +11,7 @@ from hexapod_agent.parameters import ParameterStack
 
 def test_each_array_is_clipped_to_the_threshold_alone():
     parameters = ParameterStack({'a.weight': (2, 2), 'b.bias': (3,)}, agents=2)
-    optimizer = ClippedAdam(parameters, 1e-3, threshold=1.0)
+    optimizer = ClippedAdam(parameters, 1e-3, l2=0.0, threshold=1.0)
     gradients = optimizer.gradients.arrays
     gradients['a.weight'][0] = torch.tensor([[3.0, 0.0], [0.0, 4.0]])  # norm 5
     gradients['a.weight'][1] = torch.tensor([[0.3, 0.0], [0.0, 0.4]])  # norm 0.5, stays
@@ -22,9 +22,21 @@ def test_each_array_is_clipped_to_the_threshold_alone():
     torch.testing.assert_close(gradients['b.bias'][0], torch.tensor([0.0, 1.0, 0.0]))
 
 
+def test_l2_term_is_added_to_weights_before_their_norm_is_taken():
+    parameters = ParameterStack({'a.weight': (1, 2), 'a.bias': (2,)})
+    optimizer = ClippedAdam(parameters, 1e-3, l2=0.5, threshold=1.0)
+    parameters.arrays['a.weight'].copy_(torch.tensor([[[6.0, 8.0]]]))
+    parameters.arrays['a.bias'].fill_(9.0)
+    optimizer.step()
+    # Without the term 0. With it 0.5 (6, 8) = (3, 4), of length 5, is clipped to (0.6, 0.8).
+    gradients = optimizer.gradients.arrays
+    torch.testing.assert_close(gradients['a.weight'], torch.tensor([[[0.6, 0.8]]]))
+    assert not gradients['a.bias'].any()
+
+
 def test_two_steps_follow_the_formula():
     parameters = ParameterStack({'a.bias': (1,)}, dtype=torch.float64)
-    optimizer = ClippedAdam(parameters, 0.1, threshold=10.0)
+    optimizer = ClippedAdam(parameters, 0.1, l2=0.0, threshold=10.0)
     optimizer.gradients.arrays['a.bias'].fill_(2.0)
     optimizer.step()
     # m = 0.1 g, v = 0.001 g², corrected to g and g²: the step is -0.1 g / |g|.
@@ -43,11 +55,11 @@ def test_state_carries_moments_and_step_count():
             optimizer.step()
 
     parameters = ParameterStack({'a.bias': (4,)})
-    optimizer = ClippedAdam(parameters, 0.1, 1.0)
+    optimizer = ClippedAdam(parameters, 0.1, 0.0, 1.0)
     run(5, optimizer)
     twin_parameters = ParameterStack({'a.bias': (4,)})
     twin_parameters.flat.copy_(parameters.flat)
-    twin = ClippedAdam(twin_parameters, 0.1, 1.0)
+    twin = ClippedAdam(twin_parameters, 0.1, 0.0, 1.0)
     twin.load_state_dict(optimizer.state_dict())
     run(5, optimizer)
     run(5, twin)

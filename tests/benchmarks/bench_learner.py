@@ -1,0 +1,122 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Time of one update on one core, against its bare matrix products and against stable-baselines3.
+
+Run: `python tests/benchmarks/bench_learner.py`. Sizes are those of ABCDE: 108 observations, 30
+actions, hidden layers of 400 and 300, batches of 128. stable-baselines3 is timed where it can be
+imported. Times are the best of several rounds: other load only ever adds.
+"""
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+import torch
+from hexapod_agent.config import AgentConfig
+from hexapod_agent.env import HexapodLine
+from hexapod_agent.observation import ACTION_SIZE, ObservationSpec
+from hexapod_agent.training import Trainer
+from rich.console import Console
+from rich.table import Table
+
+try:
+    import stable_baselines3
+except ImportError:
+    stable_baselines3 = None
+
+ROUNDS, REPEATS = 7, 100
+
+
+def milliseconds(call: Callable[[], object], repeats: int = REPEATS) -> float:
+    """Best mean time of a call over the rounds."""
+    best = float('inf')
+    for _ in range(ROUNDS):
+        start = time.perf_counter()
+        for _ in range(repeats):
+            call()
+        best = min(best, (time.perf_counter() - start) / repeats)
+    return best * 1e3
+
+
+def matrix_products(batch: int, sizes: tuple[int, int, int, int]) -> Callable[[], None]:
+    """Every product that the formulas of one update need, and nothing else.
+
+    Forward: target actor, target critic, critic, actor, critic again. Back: all weights of the
+    critic, the critic's action branch, all weights of the actor.
+    """
+    observation, first, second, action = sizes
+    x, h1, h2 = (torch.randn(batch, n) for n in (observation, first, second))
+    a, q = torch.randn(batch, action), torch.randn(batch, 1)
+    w1, w2 = torch.randn(first, observation), torch.randn(second, first)
+    wa, w3, wq = torch.randn(second, action), torch.randn(action, second), torch.randn(1, second)
+    actor = [(x, w1.T), (h1, w2.T), (h2, w3.T)]
+    critic = [(x, w1.T), (h1, w2.T), (a, wa.T), (h2, wq.T)]
+    critic_back = [(q.T, h2), (q, wq), (h2.T, a), (h2.T, h1), (h2, w2), (h1.T, x)]
+    action_back = [(q, wq), (h2, wa)]
+    actor_back = [(a.T, h2), (a, w3), (h2.T, h1), (h2, w2), (h1.T, x)]
+    products = [*actor, *critic, *critic, *critic_back, *actor, *critic, *action_back, *actor_back]
+    pairs = [(left, right, torch.empty(left.shape[0], right.shape[1])) for left, right in products]
+
+    def multiply() -> None:
+        for left, right, out in pairs:
+            torch.mm(left, right, out=out)
+
+    return multiply
+
+
+def full_trainer(letters: str = 'ABCDE') -> tuple[Trainer, HexapodLine]:
+    """A trainer of the default configuration with a filled buffer, and its environment."""
+    config = AgentConfig.load()
+    trainer, env = Trainer(ObservationSpec(letters), config, 1), HexapodLine(letters, config)
+    observation, _ = env.reset(seed=1)
+    trainer.begin_episode(0)
+    for _ in range(599):
+        observation, *_ = env.step(trainer.observe(observation, env.outcome))
+    return trainer, env
+
+
+def time_baseline(trainer: Trainer, env: HexapodLine) -> float:
+    """One gradient step of stable-baselines3's DDPG with the same layers and batch."""
+    config = trainer.config
+    layers = {'pi': list(config.actor.hidden), 'qf': list(config.critic.hidden)}
+    model = stable_baselines3.DDPG(
+        'MlpPolicy', env, batch_size=config.ddpg.batch_size, buffer_size=2000, device='cpu',
+        policy_kwargs={'net_arch': layers}, learning_starts=100, seed=1,
+    )  # fmt: skip
+    model.learn(600)
+    batch = config.ddpg.batch_size
+    return milliseconds(lambda: model.train(gradient_steps=1, batch_size=batch))
+
+
+def main() -> None:
+    """Print the table."""
+    trainer, env = full_trainer()
+    config = trainer.config
+    sizes = (trainer.spec.size, *config.actor.hidden, ACTION_SIZE)
+    multiply = matrix_products(config.ddpg.batch_size, sizes)
+    for _ in range(50):
+        trainer.learn()
+        multiply()
+    update = milliseconds(trainer.learn)
+    products = milliseconds(multiply)
+    action = np.zeros(ACTION_SIZE, np.float32)
+    env.reset(seed=1)
+    step = milliseconds(lambda: env.step(action), 80)
+
+    table = Table('what', 'ms', 'update / this', title='one core, batch 128, ABCDE')
+    table.add_row('our update, sampling included', f'{update:.2f}', '')
+    table.add_row('its matrix products alone', f'{products:.2f}', f'{update / products:.2f}')
+    torch.set_float32_matmul_precision('highest')
+    default = milliseconds(multiply)
+    table.add_row("the same by torch's default", f'{default:.2f}', f'{update / default:.2f}')
+    if stable_baselines3:
+        baseline = time_baseline(trainer, env)
+        name = f'update of stable-baselines3 {stable_baselines3.__version__}'
+        table.add_row(name, f'{baseline:.2f}', f'1 / {baseline / update:.2f}')
+    table.add_row('step of the environment', f'{step:.2f}', f'{update / step:.2f}')
+    Console().print(table)
+
+
+if __name__ == '__main__':
+    main()
