@@ -10,6 +10,7 @@ import pytest
 from hexapod_cpg.cpg import Cpg
 from hexapod_cpg.mapping import ACTION_SIZE, COMMAND_FIELDS, command_from_action, joint_targets
 from hexapod_cpg.oscillator import HopfConfig, start_state, trajectory
+
 from hexapod_sim import robot
 
 

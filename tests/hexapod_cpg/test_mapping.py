@@ -16,6 +16,7 @@ from hexapod_cpg.mapping import (
     command_from_action,
     joint_targets,
 )
+
 from hexapod_sim import robot
 
 OMEGA = 2 * math.pi / 0.6

@@ -9,6 +9,7 @@ import math
 import numpy as np
 import pytest
 from hexapod_cpg.oscillator import GAITS, HopfConfig, start_state, step, trajectory
+
 from hexapod_sim import robot
 
 PERIOD_S = robot.CONTROL_PERIOD_NS * 1e-9

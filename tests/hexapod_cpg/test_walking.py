@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from hexapod_cpg.cpg import Cpg
 from hexapod_cpg.mapping import ACTION_SIZE, READINGS, command_from_action
-from hexapod_sim import robot
 from hexapod_sim.sensors import read
 from hexapod_sim.task import LineTask, TaskConfig
+
+from hexapod_sim import robot
 
 PERIOD_S = robot.CONTROL_PERIOD_NS * 1e-9
 HIP_GAIN = READINGS['D1'].index('hip_gain')

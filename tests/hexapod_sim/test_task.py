@@ -174,13 +174,8 @@ def test_terms_sum_to_the_reward_and_match_the_pose(task: LineTask) -> None:
 
 
 def test_weights_scale_their_terms() -> None:
-    weights = {
-        'velocity_weight': 3.0,
-        'closeness_weight': 5.0,
-        'orientation_weight': 7.0,
-        'height_weight': 11.0,
-        'alive_reward': 13.0,
-    }
+    names = [f'{term}_weight' for term in TERM_NAMES[:-1]] + ['alive_reward']
+    weights = dict(zip(names, (3.0, 5.0, 7.0, 11.0, 13.0), strict=True))
     plain, weighted = LineTask(), LineTask(TaskConfig(**weights))
     plain.reset(2)
     weighted.reset(2)
