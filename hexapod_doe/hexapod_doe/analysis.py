@@ -4,28 +4,100 @@
 """The whole analysis of one table: models, predictions, choice, and what is uncertain in them."""
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+
+import numpy as np
 
 from hexapod_doe.attribution import alias_safe
+from hexapod_doe.choice import model_failures
+from hexapod_doe.conclusions import conclude
+from hexapod_doe.confirm import confirm
+from hexapod_doe.describe import design_caveats, failure_caveat, summarise
+from hexapod_doe.estimands import estimand, pseudo_values
+from hexapod_doe.estimate import estimates
 from hexapod_doe.options import Options
+from hexapod_doe.outlook import final_outlook
 from hexapod_doe.pipeline import Pipeline, run
 from hexapod_doe.prediction import predict_all
 from hexapod_doe.regression import curvature
-from hexapod_doe.results import Analysis, DesignSummary
+from hexapod_doe.results import Analysis
 from hexapod_doe.steps import aliases_of, main_effects, removals, step_record
-from hexapod_doe.table import RunTable, describe_words, missing_cases
+from hexapod_doe.table import RESPONSE, RunTable, TableError
 
 
-def analyse(tables: Sequence[RunTable], options: Options) -> Analysis:
-    """Analyse a table; further tables are other designs to compare, with the same options."""
-    first, *others = tables
-    compared = tuple(analyse([other], options) for other in others)
-    return dataclasses.replace(_analyse(first, options), compared=compared)
+def analyse(
+    tables: Sequence[RunTable],
+    options: Options,
+    confirmation_runs: Mapping[str, Sequence[float]] | None = None,
+) -> Analysis:
+    """Analyse a table; further tables are other designs to compare, with the same options.
 
+    Args:
+        tables: One table for each design.
+        options: The settings.
+        confirmation_runs: Responses of confirmation runs by label, to be judged.
 
-def _analyse(table: RunTable, options: Options) -> Analysis:
+    Raises:
+        TableError: A table does not allow what the options ask for.
+        AliasedTermsError: The named terms cannot be told apart.
+        ValueError: An option cannot be read.
+    """
     options = options.as_article() if options.article else options
-    state = run(table, options)
+    first, *others = tables
+    compared = tuple(_analyse(other, options, {}) for other in others)
+    return dataclasses.replace(
+        _analyse(first, options, confirmation_runs or {}), compared=compared
+    )
+
+
+def _analyse(
+    table: RunTable, options: Options, confirmation_runs: Mapping[str, Sequence[float]]
+) -> Analysis:
+    rng = np.random.default_rng(options.seed)
+    analysed = _with_estimand(table, options)
+    state = run(analysed, options)
+    base = _modelled(analysed, state, options)
+    failures = model_failures(table, options, rng) if options.estimand == 'mean' else None
+    outlook = final_outlook(state, rng)
+    if failures is not None and not options.article:
+        outlook = failures.outlook
+    caveats = [*base.caveats]
+    if failures is not None:
+        caveats.append(failure_caveat(failures.record))
+    return dataclasses.replace(
+        base,
+        table=base.table.assign(failed=False if failures is None else failures.failed),
+        caveats=tuple(caveats),
+        choice=outlook.ranking[0],
+        choice_rule=f'highest expected response by the {outlook.model}',
+        two_part=None if failures is None else failures.record,
+        estimands=estimates(table, options.level, rng),
+        **conclude(table, state, outlook, options, rng),
+        confirmation=confirm(outlook, options.confirmation, confirmation_runs),
+    )
+
+
+def _with_estimand(table: RunTable, options: Options) -> RunTable:
+    if options.estimand == 'mean':
+        return table
+    if options.trim_worst:
+        raise TableError(f'estimand {options.estimand!r} uses all runs: leave out --trim-worst')
+    item = estimand(options.estimand)
+    values = pseudo_values(item, table.values, table.rows['case'])
+    text = (
+        f'The response analysed is the {item.description} of each case ({item.name}), '
+        'as jackknife pseudo-values of the runs.'
+    )
+    return dataclasses.replace(
+        table,
+        rows=table.rows.assign(**{RESPONSE: values}),
+        response=f'{table.response} ({item.name})',
+        caveats=(*table.caveats, text),
+    )
+
+
+def _modelled(table: RunTable, state: Pipeline, options: Options) -> Analysis:
+    """Return the analysis as far as the fitted models go."""
     aliases = aliases_of(table, state.steps, state.dropped)
     final = state.steps[-1]
     predictions = predict_all(
@@ -46,7 +118,7 @@ def _analyse(table: RunTable, options: Options) -> Analysis:
         design=design,
         table=table.rows.assign(kept=state.kept),
         curves=table.curves,
-        caveats=(*table.caveats, *_design_caveats(design), *state.caveats),
+        caveats=(*table.caveats, *design_caveats(design), *state.caveats),
         main_effects=main_effects(table, _error(state)),
         steps=tuple(step_record(step, aliases) for step in state.steps),
         elimination=removals(state.dropped, aliases),
@@ -57,31 +129,7 @@ def _analyse(table: RunTable, options: Options) -> Analysis:
         predictions=predictions,
         ranking=ranking,
         choice=ranking[0],
-        choice_rule='highest prediction of the final model',
-    )
-
-
-def summarise(table: RunTable, aliases: dict[str, str]) -> DesignSummary:
-    """Describe the design that the rows of a table show."""
-    missing, expected = missing_cases(table.levels)
-    relation, resolution = describe_words(table.levels)
-    centre = table.levels.eq(0).all(axis=1)
-    runs = table.rows[~centre].groupby('case').size()
-    generated = len(table.factors) - expected.bit_length() + 1
-    size = f'2^({len(table.factors)}-{generated})' if generated else f'2^{len(table.factors)}'
-    return DesignSummary(
-        name=table.design or size,
-        factors=table.factors,
-        factor_names=table.factor_names,
-        defining_relation=relation,
-        resolution=resolution,
-        cases=len(runs),
-        expected_cases=expected,
-        missing_cases=missing,
-        runs=len(table.rows),
-        replicates=(int(runs.min()), int(runs.max())),
-        centre_points=int(centre.sum()),
-        aliases=aliases,
+        choice_rule='',
     )
 
 
@@ -92,17 +140,3 @@ def _error(state: Pipeline) -> float | None:
         if step.fit.s is not None and step.fit.n == rows and not step.transformed:
             return step.fit.s
     return None
-
-
-def _design_caveats(design: DesignSummary) -> list[str]:
-    caveats = []
-    if design.missing_cases:
-        caveats.append(
-            f'{len(design.missing_cases)} of {design.expected_cases} cases are missing '
-            f'({", ".join(design.missing_cases[:8])}): the columns are no longer orthogonal, '
-            'standard errors differ and some terms may be left out.'
-        )
-    low, high = design.replicates
-    if low != high:
-        caveats.append(f'Cases have between {low} and {high} runs: the fit weighs each run alike.')
-    return caveats

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hexapod_doe.analysis import analyse
-from hexapod_doe.bag_table import read_bags
-from hexapod_doe.csv_table import read_csv
+from hexapod_doe.bag_table import RESPONSE_NAME, bag_responses, plan_rule, read_bags
+from hexapod_doe.csv_table import read_csv, read_responses
 from hexapod_doe.errors import BagError
 from hexapod_doe.options import Options
 from hexapod_doe.results import Analysis, write_json
@@ -26,7 +26,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if args.table and not args.response:
         parser.error('--table needs --response NAME, the column to analyse')
     try:
-        analysis = analyse(_tables(args), _options(args))
+        analysis = analyse(_tables(args), _options(args), _confirmation_runs(args))
     except (TableError, BagError, ValueError, FileNotFoundError) as error:
         print(f'analyze: {error}', file=sys.stderr)
         return 2
@@ -72,6 +72,26 @@ def build_parser() -> argparse.ArgumentParser:
     )
     model.add_argument('--level', type=float, default=0.9, help='of intervals (default 0.9)')
     model.add_argument('--article', action='store_true', help="the article's whole procedure")
+    beyond = parser.add_argument_group('beyond the article')
+    beyond.add_argument(
+        '--estimand', default='mean', metavar='mean|iqm|best_of:M', help='of the runs of a case'
+    )
+    beyond.add_argument(
+        '--failure-threshold', type=float, metavar='X', help='runs below X failed (default: a gap)'
+    )
+    beyond.add_argument(
+        '--confirm',
+        type=Path,
+        nargs='+',
+        default=[],
+        metavar='RUNS',
+        help='judge confirmation runs: a CSV like --table, or directories of bags',
+    )
+    beyond.add_argument('--devices', type=Path, metavar='FILE.yaml', help='devices and their cost')
+    beyond.add_argument(
+        '--delta', type=float, metavar='D', help='reward that a cheaper set may lose'
+    )
+    beyond.add_argument('--seed', type=int, default=1, help='of resamples and draws (default 1)')
     parser.add_argument('--out', type=Path, required=True, metavar='DIR', help='report directory')
     return parser
 
@@ -90,7 +110,7 @@ def summary(analysis: Analysis) -> str:
 
 def _tables(args: argparse.Namespace) -> list[RunTable]:
     if args.bags:
-        return read_bags(args.bags)
+        return read_bags(args.bags, args.factors)
     return [table for path in args.table for table in read_csv(path, args.response, args.factors)]
 
 
@@ -105,7 +125,27 @@ def _options(args: argparse.Namespace) -> Options:
         transform=args.transform,
         article=args.article,
         level=args.level,
+        estimand=args.estimand,
+        failure_threshold=args.failure_threshold,
+        devices=args.devices,
+        delta=args.delta,
+        confirmation=plan_rule(args.bags),
+        seed=args.seed,
     )
+
+
+def _confirmation_runs(args: argparse.Namespace) -> dict[str, list[float]]:
+    """Return the responses of the confirmation runs by label."""
+    runs: dict[str, list[float]] = {}
+    for path in args.confirm:
+        found = (
+            read_responses(path, args.response or RESPONSE_NAME, args.factors)
+            if path.suffix == '.csv'
+            else bag_responses(path)
+        )
+        for label, values in found.items():
+            runs.setdefault(label, []).extend(values)
+    return runs
 
 
 def _letters(text: str) -> tuple[str, ...]:

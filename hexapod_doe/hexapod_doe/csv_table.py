@@ -6,8 +6,10 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
+from hexapod_doe.model import labels
 from hexapod_doe.table import RESPONSE, RunTable, TableError, build_rows
 
 DESIGN_COLUMN = 'design'
@@ -26,12 +28,7 @@ def read_csv(path: Path, response: str, factors: Sequence[str] | None = None) ->
         TableError: The file has no such column, or its rows cannot be analysed.
         FileNotFoundError: There is no such file.
     """
-    try:
-        raw = pd.read_csv(path)
-    except pd.errors.EmptyDataError:
-        raise TableError(f'{path}: empty file, expected a header and one row per run') from None
-    except pd.errors.ParserError as error:
-        raise TableError(f'{path}: {error}') from error
+    raw = _read(path)
     names = _factors(raw, path, response, factors)
     columns = [*names, *(name for name in _KNOWN if name in raw.columns)]
     tidy = raw[columns].assign(**{RESPONSE: raw[response]})
@@ -42,6 +39,15 @@ def read_csv(path: Path, response: str, factors: Sequence[str] | None = None) ->
     return [
         _table(path, response, names, name, part.reset_index(drop=True)) for name, part in groups
     ]
+
+
+def _read(path: Path) -> pd.DataFrame:
+    try:
+        return pd.read_csv(path)
+    except pd.errors.EmptyDataError:
+        raise TableError(f'{path}: empty file, expected a header and one row per run') from None
+    except pd.errors.ParserError as error:
+        raise TableError(f'{path}: {error}') from error
 
 
 def _factors(
@@ -78,3 +84,23 @@ def _table(
         raise TableError(f'{path}: {error}') from error
     title = f'{path.stem} {design}'.strip()
     return RunTable(title, str(path), response, factors, rows, caveats, design)
+
+
+def read_responses(
+    path: Path, response: str, factors: Sequence[str] | None = None
+) -> dict[str, list[float]]:
+    """Return the responses of a CSV file of runs by the label of their combination.
+
+    Raises:
+        TableError: A column is missing, a level is not ±1 or a response not a number.
+    """
+    raw = _read(path)
+    names = _factors(raw, path, response, factors)
+    levels = raw[list(names)]
+    if not levels.isin([-1, 1]).to_numpy().all():
+        raise TableError(f'{path}: expected levels of -1 or 1')
+    values = pd.to_numeric(raw[response], errors='coerce')
+    if not np.isfinite(values).all():
+        raise TableError(f'{path}: expected a number in every row of {response!r}')
+    groups = values.groupby(pd.Series(labels(levels), index=raw.index))
+    return {str(label): group.tolist() for label, group in groups}

@@ -45,6 +45,7 @@ class TwoPart:
     runs: int
     failures: int
     failures_by_case: Mapping[str, int]
+    cases_without_success: tuple[str, ...]
     failure_terms: tuple[str, ...]
     failure_coef: Mapping[str, float]
     """Log-odds of failure per coded unit."""
@@ -56,8 +57,15 @@ class TwoPart:
     reward_success: Mapping[str, Estimate]
     expected: Mapping[str, Estimate]
     """(1−π)·reward given success + π·mean of the failed."""
+    run_interval: Mapping[str, Bounds]
+    """Prediction interval of one new run, failures included."""
+    selected_failure_terms: tuple[str, ...]
+    selected_success_terms: tuple[str, ...]
+    """Terms left after elimination: these models choose, the ones above state."""
+    selected: Mapping[str, float]
+    """Expected reward by the models after elimination."""
     ranking: tuple[str, ...]
-    """By expected reward."""
+    """By the models after elimination."""
     choice: str
 
 
@@ -93,7 +101,7 @@ class Attribution:
 
 @dataclass(frozen=True)
 class Averaging:
-    """Predictions averaged over models, weighted by exp(−BIC/2)."""
+    """Predictions averaged over models, by exp(−BIC/2) and a prior that favours heredity."""
 
     models: int
     weights: tuple[tuple[tuple[str, ...], float], ...]
@@ -125,8 +133,11 @@ class Confirmation:
     """The validation rule and its outcome."""
 
     level: float
+    runs: int
+    """Confirmation runs of each set that the rule asks for."""
     rule: str
     checks: tuple[ConfirmationCheck, ...]
+    """The choice and the two next best, then any other set that was run."""
 
 
 @dataclass(frozen=True)
@@ -163,8 +174,9 @@ class PricedSet:
 
 @dataclass(frozen=True)
 class Breakage:
-    """What is lost when one device of the chosen set breaks."""
+    """What is lost when one device of a set breaks and the robot is trained without it."""
 
+    label: str
     device: str
     lost: str
     remaining: str
@@ -187,5 +199,6 @@ class Purchase:
     """Pareto front of the fitted reward against cost, cheapest first."""
     cheapest: str
     """Cheapest set that is not worse than the best by more than delta, with that confidence."""
+    cheapest_rule: str
     breakage: tuple[Breakage, ...]
-    """For the cheapest set."""
+    """For each device of the chosen and of the cheapest set."""

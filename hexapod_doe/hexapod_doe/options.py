@@ -3,7 +3,10 @@
 
 """The settings of an analysis."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from hexapod_doe.plan_types import Confirmation
 
 
 @dataclass(frozen=True)
@@ -28,6 +31,18 @@ class Options:
     """Confidence of every interval."""
     keep_main_effects: bool = False
     """Never eliminate a main effect."""
+    estimand: str = 'mean'
+    """What is analysed of a case's runs: `mean`, `iqm` or `best_of:m`."""
+    failure_threshold: float | None = None
+    """Runs below it failed; None for the gap rule."""
+    devices: Path | None = None
+    """Device table; None for the package's, if the factors are the robot's."""
+    delta: float | None = None
+    """What a set may be worse than the best; None for the device table's share."""
+    confirmation: Confirmation = field(default_factory=Confirmation)
+    """The rule for confirmation runs, as the plan fixed it."""
+    seed: int = 1
+    """Seed of resamples and draws."""
 
     def as_article(self) -> 'Options':
         """Return the article's procedure, with what was set otherwise left as it is set.

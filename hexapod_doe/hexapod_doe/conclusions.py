@@ -1,0 +1,70 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""What follows from the chosen model: rank uncertainty, attribution, averaging, purchase."""
+
+from typing import TypedDict
+
+import numpy as np
+
+from hexapod_doe.attribution import attribute
+from hexapod_doe.averaging import average
+from hexapod_doe.devices import read_devices
+from hexapod_doe.findings import Attribution, Averaging, Purchase, RankUncertainty
+from hexapod_doe.options import Options
+from hexapod_doe.outlook import Outlook
+from hexapod_doe.pipeline import Pipeline
+from hexapod_doe.purchase import purchase
+from hexapod_doe.ranks import rank_uncertainty
+from hexapod_doe.table import RunTable
+
+
+class Conclusions(TypedDict):
+    """Fields of the analysis that this module fills."""
+
+    rank_uncertainty: RankUncertainty | None
+    attribution: Attribution
+    averaging: Averaging
+    purchase: Purchase | None
+
+
+def conclude(
+    table: RunTable,
+    state: Pipeline,
+    outlook: Outlook,
+    options: Options,
+    rng: np.random.Generator,
+) -> Conclusions:
+    """Draw the conclusions of the model that the choice is made from.
+
+    Raises:
+        ValueError: The device table cannot be read, or does not yield a factor.
+    """
+    ranks = None
+    if outlook.draws is not None:
+        ranks = rank_uncertainty(outlook.draws, outlook.fits, outlook.labels, options.level)
+    return Conclusions(
+        rank_uncertainty=ranks,
+        attribution=attribute(table.levels, outlook.terms, outlook.coef, outlook.value, rng),
+        averaging=average(
+            state.levels, state.steps[-1].response, state.transform, options.level, rng
+        ),
+        purchase=_purchase(table, outlook, options),
+    )
+
+
+def _purchase(table: RunTable, outlook: Outlook, options: Options) -> Purchase | None:
+    """Price the sets, if a device table is given or the default one fits the factors."""
+    devices = read_devices(options.devices)
+    meant = options.devices is not None or set(table.factors) == devices.letters
+    if outlook.draws is None or not meant:
+        return None
+    return purchase(
+        outlook.labels,
+        outlook.fits,
+        outlook.draws,
+        outlook.ranking[0],
+        devices,
+        options.level,
+        options.delta,
+    )

@@ -1,0 +1,82 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Judges confirmation runs by the rule that was fixed before them.
+
+A set is confirmed if the mean of its new runs lies in the prediction interval of the mean of as
+many runs. The confidence interval of the mean won't do: one run varies by σ around it.
+"""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from hexapod_doe.draws import interval_of
+from hexapod_doe.findings import Confirmation, ConfirmationCheck
+from hexapod_doe.outlook import Outlook
+from hexapod_doe.plan_types import Confirmation as Rule
+
+_TOP = 3
+
+
+def confirm(
+    outlook: Outlook, rule: Rule, observed: Mapping[str, Sequence[float]]
+) -> Confirmation | None:
+    """State the intervals of the best sets, and judge the runs that there are.
+
+    Args:
+        outlook: The model that the choice was made from.
+        rule: Runs of a set, and confidence.
+        observed: Responses of the confirmation runs by label; empty before they are run.
+
+    Returns:
+        None where the model leaves no error to state an interval with.
+
+    Raises:
+        ValueError: A set has fewer runs than the rule asks for, or is unknown.
+    """
+    if outlook.future_mean is None:
+        return None
+    unknown = [label for label in observed if label not in outlook.labels]
+    if unknown:
+        raise ValueError(f'confirmation runs of {unknown[0]!r}: not a combination of the factors')
+    for label, values in observed.items():
+        if len(values) < rule.runs:
+            raise ValueError(
+                f'{label} has {len(values)} confirmation runs, the rule asks for {rule.runs}'
+            )
+    wanted = dict.fromkeys((*outlook.ranking[:_TOP], *observed))
+    sizes = {label: len(observed.get(label, ())) or rule.runs for label in wanted}
+    bounds = {
+        size: interval_of(outlook.future_mean(size), rule.level) for size in set(sizes.values())
+    }
+    return Confirmation(
+        level=rule.level,
+        runs=rule.runs,
+        rule=f'{rule.rule} The interval comes from the {outlook.model}.',
+        checks=tuple(
+            _check(outlook, label, bounds[sizes[label]], observed.get(label, ()), sizes[label])
+            for label in wanted
+        ),
+    )
+
+
+def _check(
+    outlook: Outlook,
+    label: str,
+    bounds: tuple[np.ndarray, np.ndarray],
+    values: Sequence[float],
+    runs: int,
+) -> ConfirmationCheck:
+    index = outlook.labels.index(label)
+    low, high = float(bounds[0][index]), float(bounds[1][index])
+    mean = float(np.mean(values)) if len(values) else None
+    return ConfirmationCheck(
+        label=label,
+        predicted=float(outlook.fits[index]),
+        interval=(low, high),
+        runs=runs,
+        observed=tuple(map(float, values)),
+        observed_mean=mean,
+        passed=None if mean is None else low <= mean <= high,
+    )

@@ -1,0 +1,74 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Says what design the rows of a table show, and what a reader must know about it."""
+
+from collections.abc import Mapping
+
+from hexapod_doe.findings import TwoPart
+from hexapod_doe.results import DesignSummary
+from hexapod_doe.table import RunTable, describe_words, missing_cases
+
+_MISSING_SHARE = 0.25
+"""With more of a fraction missing than this the design was never meant to be that fraction."""
+
+
+def summarise(table: RunTable, aliases: Mapping[str, str]) -> DesignSummary:
+    """Describe the design that the rows of a table show."""
+    missing, expected = missing_cases(table.levels)
+    relation, resolution = describe_words(table.levels)
+    centre = table.levels.eq(0).all(axis=1)
+    runs = table.rows[~centre].groupby('case').size()
+    regular = len(missing) <= _MISSING_SHARE * expected
+    return DesignSummary(
+        name=table.design or _size(len(table.factors), expected, len(runs), regular),
+        factors=table.factors,
+        factor_names=table.factor_names,
+        defining_relation=relation,
+        resolution=resolution,
+        cases=len(runs),
+        expected_cases=expected if regular else len(runs),
+        missing_cases=missing if regular else (),
+        runs=len(table.rows),
+        replicates=(int(runs.min()), int(runs.max())),
+        centre_points=int(centre.sum()),
+        aliases=aliases,
+    )
+
+
+def _size(factors: int, expected: int, cases: int, regular: bool) -> str:
+    generated = factors - expected.bit_length() + 1
+    if not regular:
+        return f'{cases} cases of 2^{factors}'
+    return f'2^({factors}-{generated})' if generated else f'2^{factors}'
+
+
+def design_caveats(design: DesignSummary) -> list[str]:
+    """Return what a reader must know about missing cases and unequal replicates."""
+    caveats = []
+    if design.missing_cases:
+        caveats.append(
+            f'{len(design.missing_cases)} of {design.expected_cases} cases are missing '
+            f'({", ".join(design.missing_cases[:8])}): the columns are no longer orthogonal, '
+            'standard errors differ and some terms may be left out.'
+        )
+    low, high = design.replicates
+    if low != high:
+        caveats.append(f'Cases have between {low} and {high} runs: the fit weighs each run alike.')
+    return caveats
+
+
+def failure_caveat(record: TwoPart) -> str:
+    """Return what a reader must know about failed runs."""
+    text = (
+        f'{record.failures} of {record.runs} runs failed (response below {record.threshold:g}): '
+        'the classical intervals of the final model treat them as noise; the two-part model '
+        'treats them as what they are.'
+    )
+    if record.cases_without_success:
+        names = ', '.join(record.cases_without_success)
+        text += (
+            f' No run of {names} succeeded: its reward given success is extrapolated from the '
+            'other cases.'
+        )
+    return text
