@@ -21,6 +21,7 @@ from hexapod_node.coroutines import sleep
 from hexapod_node.lock_step import LockStep
 from hexapod_node.matching import unheard
 from hexapod_node.stamps import time_message
+from hexapod_node.subscriptions import subscribed_topics
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from hexapod_sim.task import episode_seed
 from numpy.typing import NDArray
@@ -150,7 +151,9 @@ class GraphRun:
         return self._spec.assemble(readings, self._action)
 
     def _publish_command(self, stamp_ns: int) -> None:
-        command = command_from_action(self._action, ranges=self._config.cpg.ranges)
+        command = command_from_action(
+            self._action, self._config.cpg.reading, self._config.cpg.ranges
+        )
         command_to_message(command, self._command)
         self._command.header.stamp = time_message(stamp_ns)
         self._node.command_publisher.publish(self._command)
@@ -183,16 +186,14 @@ class GraphRun:
         """Return what the bag says of the run; the plan's own entries come with the goal."""
         given = {entry.key: entry.value for entry in self._goal.metadata}
         node = self._node
-        subscribed = node.get_subscriber_names_and_types_by_node(
-            node.get_name(), node.get_namespace()
-        )
+        subscribed = subscribed_topics(node, node.get_name(), node.get_namespace())
         return given | {
             'observations': self._spec.letters,
             'seed': str(self._goal.seed),
             'episodes': str(self._goal.episodes),
             'window': str(self._config.training.window),
             'config': yaml.safe_dump(self._config.to_mapping(), sort_keys=False),
-            'subscriptions': '\n'.join(topic for topic, _ in subscribed),
+            'subscriptions': '\n'.join(subscribed),
             **provenance(),
         }
 

@@ -140,7 +140,7 @@ def _field_docs(config: type) -> dict[str, str]:
 def _split_unit(doc: str) -> tuple[str, str]:
     found = re.search(r'\[([^\]]+)\]', doc)
     if found is None:
-        return doc, ''
+        return doc.rstrip('.'), ''
     return (doc[: found.start()].rstrip() + doc[found.end() :]).rstrip('.'), found.group(1)
 
 

@@ -1,0 +1,207 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Node agent: what it subscribes to, what it learns, and errors that end a run by name."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+import torch
+from hexapod_agent.agent_node import AgentNode
+from hexapod_agent.config import AgentConfig
+from hexapod_agent.env import HexapodLine
+from hexapod_agent.observation import LETTERS, ObservationSpec
+from hexapod_agent.train import train_episode
+from hexapod_agent.training import Trainer
+from hexapod_cpg.cpg_node import CpgNode
+from hexapod_interfaces.action import TrainRun
+from hexapod_interfaces.msg import EpisodeResult
+from hexapod_node.subscriptions import subscribed_topics
+from hexapod_sim.sim_node import SimNode
+from sensor_msgs.msg import Imu, JointState
+
+pytestmark = pytest.mark.graph
+ALWAYS = {'/joint_states', '/cpg/state', '/line_offset', '/step_outcome'}
+
+
+@pytest.fixture
+def short(tmp_path) -> str:
+    """Return a configuration of short episodes and small batches."""
+    path = tmp_path / 'short.yaml'
+    path.write_text('task: {time_limit_steps: 60}\nddpg: {batch_size: 32}\n')
+    return str(path)
+
+
+@pytest.mark.parametrize(
+    ('letters', 'topics'),
+    [
+        ('', set()),
+        ('CE', {'/imu/data', '/body/height'}),
+        ('F', {f'/foot_force/{leg}' for leg in ('lf', 'lm', 'lr', 'rf', 'rm', 'rr')}),
+        (LETTERS, None),
+    ],
+)
+def test_the_topic_graph_is_the_treatment(graph, short: str, letters: str, topics) -> None:
+    node = graph.nodes[0]
+    seen: list[set[str]] = []
+
+    class Watching(Trainer):
+        def end_episode(self, observation, outcome):
+            seen.append(set(subscribed_topics(node, 'agent', '/')))
+            return super().end_episode(observation, outcome)
+
+    heard: list[EpisodeResult] = []
+    node.create_subscription(EpisodeResult, 'episode_result', heard.append, 10)
+    graph.add(SimNode(), CpgNode(), AgentNode(Watching))
+    expected = ALWAYS | {f'/{topic}' for topic in ObservationSpec(letters).topics}
+    goal = TrainRun.Goal(run_id='r', observations=letters, seed=1, episodes=2, config=short)
+    response = graph.train(goal)
+    assert response.result.message == ''
+    graph.until(lambda: len(heard) == 2)
+    assert seen[0] == expected
+    if topics is not None:
+        assert expected == ALWAYS | topics
+    graph.until(lambda: subscribed_topics(node, 'agent', '/') == [])
+    for result in heard:
+        assert (result.late, result.missing, result.duplicate, result.out_of_order) == (0, 0, 0, 0)
+
+
+def test_a_seed_gives_the_same_weights_on_the_graph_and_in_the_environment(
+    graph, short: str
+) -> None:
+    trainers: list[Trainer] = []
+
+    def make_trainer(*args) -> Trainer:
+        trainers.append(Trainer(*args))
+        return trainers[0]
+
+    graph.add(SimNode(), CpgNode(), AgentNode(make_trainer))
+    goal = TrainRun.Goal(run_id='r', observations='ABCDE', seed=7, episodes=3, config=short)
+    response = graph.train(goal)
+    config = AgentConfig.load(short)
+    alone = Trainer(ObservationSpec('ABCDE'), config, 7)
+    env = HexapodLine('ABCDE', config)
+    for _ in range(3):
+        train_episode(env, alone)
+    assert alone.summary == trainers[0].summary
+    assert alone.summary.updates > 0
+    assert response.result.final_average_reward == alone.average_return
+    on_graph, in_env = (t.state_dict(with_replay=False) for t in (trainers[0], alone))
+    assert_same(on_graph, in_env)
+
+
+def assert_same(left, right) -> None:
+    """Compare nested states to the last bit."""
+    assert type(left) is type(right)
+    if isinstance(left, dict):
+        assert left.keys() == right.keys()
+        for key in left:
+            assert_same(left[key], right[key])
+    elif isinstance(left, torch.Tensor):
+        assert torch.equal(left, right)
+    elif isinstance(left, list | tuple):
+        for one, other in zip(left, right, strict=True):
+            assert_same(one, other)
+    else:
+        assert left == right or left != left
+
+
+@pytest.mark.parametrize(
+    ('change', 'complaint'),
+    [
+        ({'observations': 'ABX'}, "unknown letter 'X', expected letters of ABCDEFG"),
+        ({'config': '/no/such.yaml'}, "'/no/such.yaml' not found, expected a YAML file"),
+    ],
+)
+def test_a_wrong_goal_ends_with_one_clear_error(graph, change, complaint: str) -> None:
+    graph.add(AgentNode())
+    goal = TrainRun.Goal(run_id='r', observations='A', seed=1, episodes=1)
+    for name, value in change.items():
+        setattr(goal, name, value)
+    response = graph.train(goal)
+    assert complaint in response.result.message
+
+
+class Faulty(SimNode):
+    """A sim whose sensor topics can be spoiled."""
+
+    def __init__(self, topic: str, spoil) -> None:
+        super().__init__()
+        for sensor, _, publisher in self._sensors:
+            if sensor.name == topic:
+                publish = publisher.publish
+                publisher.publish = lambda message: publish(spoil(message))
+
+
+def nan(message: Imu) -> Imu:
+    message.angular_velocity.y = math.nan
+    return message
+
+
+def short_array(message: JointState) -> JointState:
+    return JointState(header=message.header, name=message.name, effort=[0.0] * 17)
+
+
+def unnamed(message: JointState) -> JointState:
+    return JointState(
+        header=message.header,
+        name=['a', *message.name[1:]],
+        position=message.position,
+        velocity=message.velocity,
+    )
+
+
+@pytest.mark.parametrize(
+    ('topic', 'spoil', 'complaint'),
+    [
+        ('imu/data_raw', nan, r'angular_velocity[1] is nan, expected a finite number'),
+        ('joint_torques', short_array, 'joint_torques: effort has 17 numbers for 18 names'),
+        ('joint_states', unnamed, 'joint_states: name lacks lf_hip'),
+    ],
+)
+def test_a_wrong_message_ends_the_run_by_name(graph, short, topic, spoil, complaint) -> None:
+    graph.add(Faulty(topic, spoil), CpgNode(), AgentNode())
+    goal = TrainRun.Goal(run_id='r', observations=LETTERS, seed=1, episodes=1, config=short)
+    response = graph.train(goal)
+    assert complaint in response.result.message
+
+
+def test_a_silent_topic_ends_the_run_by_name(graph, short: str) -> None:
+    agent = AgentNode()
+    agent.timeout_s = 1.0
+    graph.add(SimNode(), CpgNode(), agent)
+    for sensor, _, publisher in graph.nodes[1]._sensors:
+        if sensor.name == 'body/height':
+            publisher.publish = lambda message: None
+    goal = TrainRun.Goal(run_id='r', observations='CE', seed=1, episodes=1, config=short)
+    response = graph.train(goal)
+    assert 'no sample of body/height stamped' in response.result.message
+
+
+def test_a_joint_driver_may_have_its_own_order_and_more_joints(graph, short: str) -> None:
+    def reorder(message: JointState) -> JointState:
+        order = [*reversed(range(18))]
+        return JointState(
+            header=message.header,
+            name=[*(message.name[i] for i in order), 'pan'],
+            position=[*(message.position[i] for i in order), 9.0],
+            velocity=[*(message.velocity[i] for i in order), 9.0],
+        )
+
+    graph.add(Faulty('joint_states', reorder), CpgNode(), AgentNode())
+    goal = TrainRun.Goal(run_id='r', observations='', seed=1, episodes=1, config=short)
+    response = graph.train(goal)
+    config = AgentConfig.load(short)
+    in_order = Trainer(ObservationSpec(''), config, 1)
+    train_episode(HexapodLine('', config), in_order)
+    assert response.result.final_average_reward == in_order.average_return
+
+
+def test_an_agent_takes_one_run_at_a_time(graph, short: str) -> None:
+    agent = AgentNode()
+    graph.add(agent)
+    agent._reserved = True
+    with pytest.raises(AssertionError):
+        graph.train(TrainRun.Goal(run_id='r', episodes=1, config=short))

@@ -1,0 +1,54 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Coroutines are resumed by the event that they wait for, and cost nothing while they wait."""
+
+import time
+
+import pytest
+from hexapod_interfaces.srv import ResetEpisode
+from hexapod_node.calls import ServiceUnavailableError, call
+from hexapod_node.coroutines import sleep, start, until
+from rclpy.task import Future
+
+pytestmark = pytest.mark.graph
+
+
+def test_a_coroutine_goes_on_inside_the_call_that_sets_the_future() -> None:
+    first, second = Future(), Future()
+
+    async def work() -> int:
+        return await until(first) + await until(second)
+
+    done = start(work())
+    first.set_result(1)
+    assert not done.done()
+    second.set_result(2)
+    assert done.result() == 3
+
+
+def test_an_exception_reaches_whoever_holds_the_future() -> None:
+    failing = Future()
+
+    async def work() -> None:
+        await until(failing)
+
+    done = start(work())
+    failing.set_exception(ValueError('expected'))
+    with pytest.raises(ValueError, match='expected'):
+        done.result()
+
+
+def test_waiting_uses_no_processor_time(graph) -> None:
+    done = start(sleep(graph.nodes[0], 1.0))
+    began = time.process_time()
+    graph.until(done.done)
+    assert time.process_time() - began < 0.5
+
+
+def test_a_service_without_a_server_is_named(graph) -> None:
+    client = graph.nodes[0].create_client(ResetEpisode, 'sim/reset')
+    done = start(call(graph.nodes[0], client, ResetEpisode.Request(), 0.3))
+    graph.until(done.done)
+    with pytest.raises(ServiceUnavailableError, match=r'/sim/reset: no server within 0.3 s'):
+        done.result()

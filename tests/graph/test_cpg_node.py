@@ -1,0 +1,106 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Node cpg: one command in, one trajectory of five points and one oscillator state out."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hexapod_cpg.cpg import Cpg
+from hexapod_cpg.cpg_node import CpgNode
+from hexapod_cpg.mapping import command_from_action
+from hexapod_cpg.messages import command_to_message
+from hexapod_interfaces.msg import CpgCommand, CpgState
+from hexapod_interfaces.srv import ResetEpisode
+from hexapod_node.stamps import time_message, to_nanoseconds
+from rcl_interfaces.srv import SetParametersAtomically
+from rclpy.parameter import Parameter
+from trajectory_msgs.msg import JointTrajectory
+
+from hexapod_sim import robot
+
+pytestmark = pytest.mark.graph
+START = 1_000_000_000
+PERIOD = robot.CONTROL_PERIOD_NS
+ACTION = np.linspace(-1.0, 1.0, 30, dtype=np.float32)
+
+
+class Rig:
+    """A pattern generator node with a commander and listeners."""
+
+    def __init__(self, graph) -> None:
+        self.graph = graph
+        self.cpg = graph.add(CpgNode())
+        self.trajectories: list[JointTrajectory] = []
+        self.states: list[CpgState] = []
+        node = graph.nodes[0]
+        node.create_subscription(JointTrajectory, 'joint_trajectory', self.trajectories.append, 10)
+        node.create_subscription(CpgState, 'cpg/state', self.states.append, 10)
+        self.publisher = node.create_publisher(CpgCommand, 'cpg/command', 10)
+        graph.until(lambda: self.publisher.get_subscription_count() == 1)
+        request = ResetEpisode.Request(
+            start=time_message(START),
+            topics=['/joint_trajectory', '/cpg/state'],
+            subscriptions=[1, 1],
+        )
+        while not graph.call(ResetEpisode, 'cpg/reset', request).success:
+            graph.executor.spin_once(timeout_sec=0.01)
+        graph.until(lambda: len(self.states) == 1)
+
+    def command(self, stamp_ns: int, spoil=lambda message: None) -> None:
+        message = CpgCommand()
+        command_to_message(command_from_action(ACTION), message)
+        message.header.stamp = time_message(stamp_ns)
+        spoil(message)
+        self.publisher.publish(message)
+
+
+@pytest.fixture
+def rig(graph) -> Rig:
+    return Rig(graph)
+
+
+def test_a_command_gives_the_trajectory_of_its_period_and_the_state_at_its_end(rig: Rig) -> None:
+    rig.command(START)
+    rig.graph.until(lambda: len(rig.trajectories) == 1 and len(rig.states) == 2)
+    cpg = Cpg()
+    targets = cpg.advance(command_from_action(ACTION))
+    (trajectory,) = rig.trajectories
+    assert to_nanoseconds(trajectory.header.stamp) == START
+    assert tuple(trajectory.joint_names) == robot.JOINTS
+    times = [to_nanoseconds(point.time_from_start) for point in trajectory.points]
+    assert times == [5_000_000, 10_000_000, 15_000_000, 20_000_000, 25_000_000]
+    np.testing.assert_array_equal([list(point.positions) for point in trajectory.points], targets)
+    assert [to_nanoseconds(state.header.stamp) for state in rig.states] == [START, START + PERIOD]
+    np.testing.assert_array_equal(rig.states[1].x, cpg.x)
+    np.testing.assert_array_equal(rig.states[1].y, cpg.y)
+
+
+def test_a_command_that_is_not_due_is_counted_and_not_played(rig: Rig) -> None:
+    rig.command(START + PERIOD)
+    rig.command(START)
+    rig.command(START)
+    rig.graph.until(lambda: rig.cpg._due.counts.duplicate == 1 and len(rig.states) == 2)
+    assert rig.cpg._due.counts.out_of_order == 1
+    assert len(rig.trajectories) == 1
+
+
+def test_a_command_with_nan_is_refused_by_name(rig: Rig) -> None:
+    errors = []
+    rig.cpg.get_logger().error = errors.append
+    rig.command(START, lambda message: message.knee_bias.__setitem__(2, float('nan')))
+    rig.graph.until(lambda: bool(errors))
+    assert 'knee_bias' in errors[0]
+    assert 'finite' in errors[0]
+    rig.command(START)
+    rig.graph.until(lambda: len(rig.trajectories) == 1)
+
+
+def test_an_unknown_gait_is_refused(rig: Rig) -> None:
+    gait = Parameter('cpg.gait', value='gallop').to_parameter_msg()
+    request = SetParametersAtomically.Request(parameters=[gait])
+    answer = rig.graph.call(SetParametersAtomically, 'cpg/set_parameters_atomically', request)
+    assert not answer.result.successful
+    assert 'gallop' in answer.result.reason
+    assert 'tripod' in answer.result.reason
