@@ -40,7 +40,7 @@ def analyse(
     Raises:
         TableError: A table does not allow what the options ask for.
         AliasedTermsError: The named terms cannot be told apart.
-        ValueError: An option cannot be read.
+        AnalysisError: An option cannot be read.
     """
     options = options.as_article() if options.article else options
     first, *others = tables

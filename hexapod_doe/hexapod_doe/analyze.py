@@ -11,10 +11,10 @@ from pathlib import Path
 from hexapod_doe.analysis import analyse
 from hexapod_doe.bag_table import RESPONSE_NAME, bag_responses, plan_rule, read_bags
 from hexapod_doe.csv_table import read_csv, read_responses
-from hexapod_doe.errors import BagError
+from hexapod_doe.errors import AnalysisError, BagError
 from hexapod_doe.options import Options
 from hexapod_doe.results import Analysis, write_json
-from hexapod_doe.table import RunTable, TableError
+from hexapod_doe.table import RunTable
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -27,7 +27,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.error('--table needs --response NAME, the column to analyse')
     try:
         analysis = analyse(_tables(args), _options(args), _confirmation_runs(args))
-    except (TableError, BagError, ValueError, FileNotFoundError) as error:
+    except (AnalysisError, BagError, FileNotFoundError) as error:
         print(f'analyze: {error}', file=sys.stderr)
         return 2
     args.out.mkdir(parents=True, exist_ok=True)

@@ -9,6 +9,7 @@ fit to every run and another prediction wherever the two columns differ.
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from itertools import product
 from math import prod
 
 import numpy as np
@@ -119,7 +120,7 @@ def _namings(sizes: Sequence[int], rng: np.random.Generator) -> np.ndarray:
     """Return the choice of a name for each ambiguous term, one naming a row."""
     total = prod(sizes)
     if total <= MAX_EXAMINED:
-        return np.stack(np.unravel_index(np.arange(total), (*sizes, 1))[:-1], axis=1)
+        return np.array(list(product(*map(range, sizes))), dtype=int).reshape(total, len(sizes))
     sample = rng.integers(0, sizes, (MAX_EXAMINED, len(sizes)))
     sample[0] = 0  # the naming that was fitted
     return sample

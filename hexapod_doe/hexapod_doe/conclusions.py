@@ -38,7 +38,7 @@ def conclude(
     """Draw the conclusions of the model that the choice is made from.
 
     Raises:
-        ValueError: The device table cannot be read, or does not yield a factor.
+        AnalysisError: The device table cannot be read, or does not yield a factor.
     """
     ranks = None
     if outlook.draws is not None:

@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from hexapod_doe.draws import interval_of
+from hexapod_doe.errors import AnalysisError
 from hexapod_doe.findings import Confirmation, ConfirmationCheck
 from hexapod_doe.outlook import Outlook
 from hexapod_doe.plan_types import Confirmation as Rule
@@ -33,16 +34,18 @@ def confirm(
         None where the model leaves no error to state an interval with.
 
     Raises:
-        ValueError: A set has fewer runs than the rule asks for, or is unknown.
+        AnalysisError: A set has fewer runs than the rule asks for, or is unknown.
     """
     if outlook.future_mean is None:
         return None
     unknown = [label for label in observed if label not in outlook.labels]
     if unknown:
-        raise ValueError(f'confirmation runs of {unknown[0]!r}: not a combination of the factors')
+        raise AnalysisError(
+            f'confirmation runs of {unknown[0]!r}: not a combination of the factors'
+        )
     for label, values in observed.items():
         if len(values) < rule.runs:
-            raise ValueError(
+            raise AnalysisError(
                 f'{label} has {len(values)} confirmation runs, the rule asks for {rule.runs}'
             )
     wanted = dict.fromkeys((*outlook.ranking[:_TOP], *observed))

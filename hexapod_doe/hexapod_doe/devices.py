@@ -12,6 +12,7 @@ from typing import Any
 
 import yaml
 
+from hexapod_doe.errors import AnalysisError
 from hexapod_doe.findings import Device
 
 
@@ -34,11 +35,13 @@ class DeviceTable:
         """Return the cheapest devices that yield all the letters; the fewest on a tie.
 
         Raises:
-            ValueError: No device yields one of the letters.
+            AnalysisError: No device yields one of the letters.
         """
         wanted = set(letters)
         if missing := sorted(wanted - self.letters):
-            raise ValueError(f'no device yields {missing[0]!r}, expected one in the device table')
+            raise AnalysisError(
+                f'no device yields {missing[0]!r}, expected one in the device table'
+            )
         useful = [device for device in self.devices if wanted & set(device.yields)]
         sets = (
             chosen
@@ -53,14 +56,14 @@ def read_devices(path: Path | None = None) -> DeviceTable:
     """Read a device table, by default the one of the package.
 
     Raises:
-        ValueError: A key is unknown or missing, or a value is not what it should be.
+        AnalysisError: A key is unknown or missing, or a value is not what it should be.
         FileNotFoundError: There is no such file.
     """
     source = path or files('hexapod_doe') / 'devices.yaml'
     record = yaml.safe_load(source.read_text(encoding='utf-8'))
     expected = {'currency', 'delta_share', 'confidence', 'devices'}
     if not isinstance(record, dict) or set(record) != expected:
-        raise ValueError(f'{source}: expected the keys {", ".join(sorted(expected))}')
+        raise AnalysisError(f'{source}: expected the keys {", ".join(sorted(expected))}')
     devices = tuple(_device(entry, str(source)) for entry in record['devices'])
     return DeviceTable(
         devices, str(record['currency']), float(record['delta_share']), float(record['confidence'])
@@ -70,10 +73,12 @@ def read_devices(path: Path | None = None) -> DeviceTable:
 def _device(entry: Any, source: str) -> Device:
     names = {field.name for field in fields(Device)}
     if not isinstance(entry, dict) or set(entry) != names:
-        raise ValueError(f'{source}: device {entry}: expected the keys {", ".join(sorted(names))}')
+        raise AnalysisError(
+            f'{source}: device {entry}: expected the keys {", ".join(sorted(names))}'
+        )
     numbers = {name: float(entry[name]) for name in names - {'name', 'yields'}}
     if bad := [name for name, value in numbers.items() if value < 0]:
-        raise ValueError(f'{source}: device {entry["name"]!r}: {bad[0]} is negative')
+        raise AnalysisError(f'{source}: device {entry["name"]!r}: {bad[0]} is negative')
     if numbers['failure_probability'] > 1:
-        raise ValueError(f'{source}: device {entry["name"]!r}: failure_probability is above 1')
+        raise AnalysisError(f'{source}: device {entry["name"]!r}: failure_probability is above 1')
     return Device(name=str(entry['name']), yields=str(entry['yields']), **numbers)

@@ -1,8 +1,12 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The errors that users of campaigns and bags meet."""
+"""The errors that users of campaigns, bags and analyses meet."""
 
 
 class BagError(ValueError):
     """A bag cannot be read or written; the text names the path and what was expected of it."""
+
+
+class AnalysisError(ValueError):
+    """A table or an option does not allow the analysis; the text names it and the expectation."""

@@ -15,6 +15,7 @@ from math import comb
 import numpy as np
 import pandas as pd
 
+from hexapod_doe.errors import AnalysisError
 from hexapod_doe.table import TableError
 
 Weights = Callable[[int], np.ndarray]
@@ -35,7 +36,7 @@ def estimand(name: str) -> Estimand:
     """Return the estimand called `mean`, `iqm` or `best_of:m`.
 
     Raises:
-        ValueError: There is no such estimand.
+        AnalysisError: There is no such estimand.
     """
     if name == 'mean':
         return Estimand(name, 'mean of all runs', lambda n: np.full(n, 1 / n), 1)
@@ -43,7 +44,7 @@ def estimand(name: str) -> Estimand:
         return Estimand(name, 'mean of the middle half of the runs', _iqm, 4)
     kind, _, number = name.partition(':')
     if kind != 'best_of' or not number.isdigit() or int(number) < 1:
-        raise ValueError(f'estimand {name!r}: expected mean, iqm or best_of:m')
+        raise AnalysisError(f'estimand {name!r}: expected mean, iqm or best_of:m')
     best = int(number)
     return Estimand(
         name, f'expected best of {best} runs', lambda n: best_of_weights(n, best), best + 1

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
+from hexapod_doe.errors import AnalysisError
+
 
 @dataclass(frozen=True)
 class Lenth:
@@ -34,10 +36,10 @@ def lenth(effects: Mapping[str, float], alpha: float = 0.05) -> Lenth:
     """Apply Lenth's method to the effects (not coefficients) of a saturated fit.
 
     Raises:
-        ValueError: There are fewer than three effects.
+        AnalysisError: There are fewer than three effects.
     """
     if len(effects) < 3:
-        raise ValueError(f"{len(effects)} effects: Lenth's method needs three at least")
+        raise AnalysisError(f"{len(effects)} effects: Lenth's method needs three at least")
     sizes = np.abs(list(effects.values()))
     s0 = 1.5 * float(np.median(sizes))
     inert = sizes[sizes < 2.5 * s0]

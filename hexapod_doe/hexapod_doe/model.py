@@ -15,6 +15,7 @@ import pandas as pd
 
 from hexapod_doe import terms as words
 from hexapod_doe.aliases import alias_text
+from hexapod_doe.errors import AnalysisError
 from hexapod_doe.terms import CONSTANT, letters_on, normalise, order, sort_key, terms_up_to
 
 CURVATURE = 'CP'
@@ -24,7 +25,7 @@ EMPTY_SET = '(none)'
 _TOLERANCE = 1e-9
 
 
-class AliasedTermsError(ValueError):
+class AliasedTermsError(AnalysisError):
     """Terms of one model whose columns the runs cannot tell apart."""
 
 
@@ -42,13 +43,18 @@ def parse_terms(text: str, factors: Sequence[str]) -> tuple[str, ...]:
     """Read a list such as ``A,B,AB`` into terms; the constant is added.
 
     Raises:
-        ValueError: A letter is not a factor or occurs twice in a term, or no term is named.
+        AnalysisError: A letter is not a factor or occurs twice in a term, or no term is named.
     """
     parts = [part.strip().replace('*', '') for part in text.split(',') if part.strip()]
     if not parts:
-        raise ValueError(f'terms {text!r}: no term named, expected a list such as A,B,AB')
+        raise AnalysisError(f'terms {text!r}: no term named, expected a list such as A,B,AB')
     letters = ''.join(factors)
-    terms = {part if is_curvature(part, factors) else normalise(part, letters) for part in parts}
+    try:
+        terms = {
+            part if is_curvature(part, factors) else normalise(part, letters) for part in parts
+        }
+    except ValueError as error:
+        raise AnalysisError(str(error)) from error
     return tuple(sorted(terms | {CONSTANT}, key=term_key))
 
 

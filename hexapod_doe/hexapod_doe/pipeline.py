@@ -74,7 +74,7 @@ def run(table: RunTable, options: Options) -> Pipeline:
     Raises:
         AliasedTermsError: The named terms cannot be told apart.
         TableError: Trimming would leave a case without runs.
-        ValueError: A term or the transform cannot be read.
+        AnalysisError: A term or the transform cannot be read.
     """
     state = Pipeline(table, options)
     _initial(state)

@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 from scipy import linalg, stats
 
+from hexapod_doe.errors import AnalysisError
 from hexapod_doe.model import check_rank, model_matrix
 
 _SATURATED = 1e-9
@@ -125,10 +126,12 @@ class Fit:
         """Return Cov(b) (p, p).
 
         Raises:
-            ValueError: the fit is saturated.
+            AnalysisError: the fit is saturated.
         """
         if self.s is None:
-            raise ValueError('a saturated fit has no error to give its coefficients a covariance')
+            raise AnalysisError(
+                'a saturated fit has no error to give its coefficients a covariance'
+            )
         return self.s**2 * self.r_inverse @ self.r_inverse.T
 
     def unscaled_variance(self, points: np.ndarray) -> np.ndarray:
@@ -141,12 +144,12 @@ def ols(levels: pd.DataFrame, response: np.ndarray, terms: Sequence[str]) -> Fit
 
     Raises:
         AliasedTermsError: the runs cannot tell the terms apart.
-        ValueError: there are fewer rows than terms.
+        AnalysisError: there are fewer rows than terms.
     """
     check_rank(levels, terms)
     matrix = model_matrix(levels, terms)
     if len(matrix) < len(terms):
-        raise ValueError(f'{len(terms)} terms need as many runs, the table has {len(matrix)}')
+        raise AnalysisError(f'{len(terms)} terms need as many runs, the table has {len(matrix)}')
     q, r = linalg.qr(matrix, mode='economic')
     r_inverse = linalg.solve_triangular(r, np.eye(len(r)))
     fitted = q @ (q.T @ response)

@@ -10,13 +10,14 @@ import numpy as np
 import pandas as pd
 
 from hexapod_doe.aliases import defining_relation, defining_words, resolution
+from hexapod_doe.errors import AnalysisError
 from hexapod_doe.model import corners, labels
 
 RESPONSE = 'response'
 CURVE_COLUMNS = ('run_id', 'label', 'case', 'replicate', 'episode', 'return', 'average')
 
 
-class TableError(ValueError):
+class TableError(AnalysisError):
     """A table cannot be analysed; the message names the row and the column."""
 
 

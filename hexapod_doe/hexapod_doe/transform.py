@@ -14,6 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import linalg, optimize, special, stats
 
+from hexapod_doe.errors import AnalysisError
+
 BOUNDS = (-5.0, 5.0)
 SHIFT_MARGIN = 0.05
 SENSITIVITY_MARGINS = (0.001, 0.01, 0.05, 0.1, 0.25, 0.5, 1.0)
@@ -134,7 +136,7 @@ def choose_transform(text: str, response: np.ndarray, matrix: np.ndarray) -> Tra
         matrix: Their model matrix (n, p), with fewer terms than rows.
 
     Raises:
-        ValueError: The name is unknown, or the model leaves Box-Cox no error to judge λ by.
+        AnalysisError: The name is unknown, or the model leaves Box-Cox no error to judge λ by.
     """
     kind, _, value = text.partition(':')
     if kind == 'none':
@@ -150,7 +152,7 @@ def choose_transform(text: str, response: np.ndarray, matrix: np.ndarray) -> Tra
     if kind == 'power':
         return Transform(kind, _power(text, value), shift, rule)
     if kind != 'boxcox':
-        raise ValueError(f'transform {text!r}: expected none, log, boxcox or power:L')
+        raise AnalysisError(f'transform {text!r}: expected none, log, boxcox or power:L')
     return _boxcox(Transform(kind, 1.0, shift, rule), response, matrix)
 
 
@@ -158,12 +160,12 @@ def _power(text: str, value: str) -> float:
     try:
         return float(value)
     except ValueError:
-        raise ValueError(f'transform {text!r}: expected a number after power:') from None
+        raise AnalysisError(f'transform {text!r}: expected a number after power:') from None
 
 
 def _boxcox(blank: Transform, response: np.ndarray, matrix: np.ndarray) -> Transform:
     if matrix.shape[0] <= matrix.shape[1]:
-        raise ValueError('Box-Cox needs a model with degrees of freedom for error')
+        raise AnalysisError('Box-Cox needs a model with degrees of freedom for error')
     positive = response + blank.shift
     best = profile_lambda(positive, matrix)
     return replace(
