@@ -13,10 +13,12 @@ from typing import Any
 import pandas as pd
 
 from hexapod_doe.bag_file import BagFile
+from hexapod_doe.bag_state import find_bags, is_complete
 from hexapod_doe.errors import BagError
-from hexapod_doe.rosbag2 import METADATA_FILE, is_unfinished
+from hexapod_doe.run_bag import EPISODE_RESULT
 
-EPISODE_RESULT = 'hexapod_interfaces/msg/EpisodeResult'
+__all__ = ['RunRecord', 'find_bags', 'is_complete', 'read_run', 'read_topic']
+
 _SCALARS = (
     'episode',
     'steps',
@@ -34,8 +36,6 @@ _SCALARS = (
     'duplicate',
     'out_of_order',
 )
-COMPLETE = 'complete'
-"""Value of the metadata key `status` in a bag that holds all that it was meant to."""
 
 
 @dataclass(frozen=True)
@@ -77,27 +77,6 @@ def read_topic(bag: str | Path, topic: str) -> Iterator[tuple[int, Any]]:
     """
     file = BagFile(Path(bag))
     yield from file.decoded(file.topic(topic))
-
-
-def is_complete(bag: str | Path) -> bool:
-    """Whether the bag is closed, sound, and holds every episode that its run was to have."""
-    try:
-        file = BagFile(Path(bag))
-        metadata = file.run_metadata()
-        recorded = file.counts[file.topic_of_type(EPISODE_RESULT)]
-    except BagError:
-        return False
-    return metadata.get('status') == COMPLETE and str(recorded) == metadata.get('episodes')
-
-
-def find_bags(path: str | Path) -> list[Path]:
-    """Return the closed bags at and below a folder, sorted by path."""
-    root = Path(path)
-    if not root.is_dir():
-        raise BagError(f'{root}: no such directory, expected a folder with bags')
-    return sorted(
-        file.parent for file in root.rglob(METADATA_FILE) if not is_unfinished(file.parent)
-    )
 
 
 def _episode_row(result: Any) -> dict[str, Any]:

@@ -20,7 +20,8 @@ from mcap_ros2.decoder import DecoderFactory
 from zstandard import ZstdError
 
 from hexapod_doe.errors import BagError
-from hexapod_doe.rosbag2 import METADATA_FILE, ROOT_KEY, RUN_RECORD, offered_qos, partial_path
+from hexapod_doe.rosbag2 import METADATA_FILE, ROOT_KEY, offered_qos, partial_path
+from hexapod_doe.run_bag import RUN_RECORD
 
 _YAML_LOADER = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
 DAMAGE = (McapError, ZstdError, struct.error, ValueError, OSError)

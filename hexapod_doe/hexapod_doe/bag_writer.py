@@ -23,7 +23,8 @@ from mcap.writer import CompressionType, Writer
 
 from hexapod_doe import rosbag2
 from hexapod_doe.errors import BagError
-from hexapod_doe.rosbag2 import METADATA_FILE, ROOT_KEY, RUN_RECORD, Topic, partial_path
+from hexapod_doe.rosbag2 import METADATA_FILE, ROOT_KEY, Topic, partial_path
+from hexapod_doe.run_bag import RUN_RECORD
 from hexapod_doe.schema import definition, type_hash
 
 CHUNK_BYTES = 1 << 20

@@ -14,16 +14,13 @@ from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 
-from hexapod_doe.bag import COMPLETE
 from hexapod_doe.bag_writer import BagWriter
 from hexapod_doe.cdr import stamp_ns
 from hexapod_doe.completeness import EpisodeTally, describe
 from hexapod_doe.errors import BagError
 from hexapod_doe.rosbag2 import Topic
+from hexapod_doe.run_bag import COMPLETE, RECORDING
 from hexapod_doe.schema import is_stamped
-
-RECORDING = 'recording'
-"""Value of the metadata key `status` until the run is complete."""
 
 
 class Recording:

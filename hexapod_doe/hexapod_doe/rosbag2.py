@@ -19,8 +19,6 @@ import yaml
 METADATA_FILE = 'metadata.yaml'
 ROOT_KEY = 'rosbag2_bagfile_information'
 VERSION = 9
-RUN_RECORD = 'hexapod_run'
-"""Name of the MCAP metadata record that tells which run a bag holds."""
 PARTIAL_SUFFIX = '.partial'
 """What a bag's name ends with until it is whole."""
 _UNFINISHED = re.compile(r'\.(partial|cut_\d+|salvaged)$')

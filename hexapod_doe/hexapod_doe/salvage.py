@@ -20,12 +20,11 @@ from mcap.records import Channel, McapRecord, Message, Metadata, Schema
 from mcap.stream_reader import StreamReader
 
 from hexapod_doe.bag_file import DAMAGE
+from hexapod_doe.bag_state import is_complete
 from hexapod_doe.bag_writer import BagWriter
 from hexapod_doe.errors import BagError
-from hexapod_doe.rosbag2 import RUN_RECORD, Topic, offered_qos, partial_path
-
-SALVAGED = 'salvaged'
-"""Value of the metadata key `status` in a bag that was recovered."""
+from hexapod_doe.rosbag2 import Topic, offered_qos, partial_path
+from hexapod_doe.run_bag import RUN_RECORD, SALVAGED
 
 
 def salvage(bag: str | Path) -> Path:
@@ -48,21 +47,26 @@ def salvage(bag: str | Path) -> Path:
 
 
 def set_aside(bag: str | Path) -> Path | None:
-    """Rename an unfinished `<bag>.partial` to `<bag>.cut_<n>`, so that the run can be repeated.
+    """Rename what is left of an earlier recording to `<bag>.cut_<n>`, so the run can be repeated.
+
+    That is an unfinished `<bag>.partial`, or a `<bag>` that is damaged or incomplete. A complete
+    bag stays, and so does a directory that never was a bag of that name.
 
     Returns:
-        The new name, or None where there is nothing unfinished.
+        The new name, or None where there is nothing to set aside.
 
     Raises:
         BagError: it is still being written.
     """
     bag = Path(bag)
-    partial = partial_path(bag)
-    if not partial.is_dir():
-        return None
-    with _exclusive(bag):
-        names = (bag.with_name(f'{bag.name}.cut_{n}') for n in itertools.count(1))
-        return partial.rename(next(name for name in names if not name.exists()))
+    names = (bag.with_name(f'{bag.name}.cut_{n}') for n in itertools.count(1))
+    aside = None
+    if partial_path(bag).is_dir():
+        with _exclusive(bag):
+            aside = partial_path(bag).rename(next(name for name in names if not name.exists()))
+    if _file(bag, bag).is_file() and not is_complete(bag):
+        aside = bag.rename(next(name for name in names if not name.exists()))
+    return aside
 
 
 def whole_records(stream: BinaryIO) -> Iterator[McapRecord]:
@@ -116,9 +120,13 @@ def _topic(channel: Channel, schema: Schema) -> Topic:
     )
 
 
+def _file(directory: Path, bag: Path) -> Path:
+    return directory / f'{bag.name}_0.mcap'
+
+
 @contextmanager
 def _exclusive(bag: Path) -> Iterator[BinaryIO]:
-    path = partial_path(bag) / f'{bag.name}_0.mcap'
+    path = _file(partial_path(bag), bag)
     try:
         with path.open('rb') as stream:
             fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -106,3 +106,18 @@ def test_set_aside_keeps_every_cut(tmp_path, samples):
         writer.abandon()
         assert set_aside(bag) == tmp_path / f'r1.cut_{n}'
     assert not partial_path(bag).exists()
+
+
+def test_set_aside_takes_a_damaged_bag_but_no_complete_one(write_bag):
+    bag = write_bag('r1')
+    assert set_aside(bag) is None
+    (bag / 'metadata.yaml').unlink()
+    assert set_aside(bag) == bag.with_name('r1.cut_1')
+    assert not bag.exists()
+
+
+def test_set_aside_leaves_a_directory_of_something_else(tmp_path):
+    (tmp_path / 'home').mkdir()
+    (tmp_path / 'home' / 'thesis.txt').write_text('dear')
+    assert set_aside(tmp_path / 'home') is None
+    assert (tmp_path / 'home' / 'thesis.txt').exists()
