@@ -72,7 +72,7 @@ def _analyse(
         choice_rule=f'highest expected response by the {outlook.model}',
         two_part=None if failures is None else failures.record,
         estimands=estimates(table, options.level, rng),
-        **conclude(table, state, outlook, options, rng),
+        **conclude(table, outlook, options, rng),
         confirmation=confirm(outlook, options.confirmation, confirmation_runs),
     )
 

@@ -9,7 +9,7 @@ parents (Chipman, Hamada and Wu, Technometrics 39, 1997).
 """
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -19,9 +19,8 @@ from scipy import linalg
 from hexapod_doe.draws import interval_of
 from hexapod_doe.findings import Averaging, Estimate
 from hexapod_doe.model import corners, labels, model_matrix, parents
-from hexapod_doe.prediction import back, rank_descending
+from hexapod_doe.prediction import rank_descending
 from hexapod_doe.terms import CONSTANT, order, terms_up_to
-from hexapod_doe.transform import Transform
 
 P_MAIN = 0.5
 P_INTERACTION = (0.01, 0.10, 0.25)
@@ -90,11 +89,19 @@ class ModelSpace:
 def average(
     levels: pd.DataFrame,
     response: np.ndarray,
-    transform: Transform | None,
+    spread: Callable[[np.ndarray], np.ndarray],
     level: float,
     rng: np.random.Generator,
 ) -> Averaging:
-    """Average the predictions of all combinations over the models, in original units."""
+    """Average the values of all combinations over the models.
+
+    Args:
+        levels: Coded levels of the rows.
+        response: Response that the models explain (n,).
+        spread: Maps draws of the linear predictor to draws of the values (draws, 2^k).
+        level: Confidence of the intervals.
+        rng: For the sampler.
+    """
     space = ModelSpace(levels, response)
     grid = corners(list(levels.columns))
     points = model_matrix(grid, [CONSTANT, *space.terms])
@@ -106,10 +113,7 @@ def average(
         if sweep >= BURN_IN:
             visited[active.tobytes()] += 1
             draws.append(_draw(space, active, points, rng))
-    values = back(np.array(draws), transform)
-    if transform is not None:
-        values = np.nan_to_num(values, nan=-transform.shift)
-    return _summarise(space, visited, values, labels(grid), level)
+    return _summarise(space, visited, spread(np.array(draws)), labels(grid), level)
 
 
 def _gibbs_sweep(space: ModelSpace, active: np.ndarray, rng: np.random.Generator) -> None:

@@ -13,7 +13,6 @@ from hexapod_doe.devices import read_devices
 from hexapod_doe.findings import Attribution, Averaging, Purchase, RankUncertainty
 from hexapod_doe.options import Options
 from hexapod_doe.outlook import Outlook
-from hexapod_doe.pipeline import Pipeline
 from hexapod_doe.purchase import purchase
 from hexapod_doe.ranks import rank_uncertainty
 from hexapod_doe.table import RunTable
@@ -30,7 +29,6 @@ class Conclusions(TypedDict):
 
 def conclude(
     table: RunTable,
-    state: Pipeline,
     outlook: Outlook,
     options: Options,
     rng: np.random.Generator,
@@ -40,15 +38,10 @@ def conclude(
     Raises:
         AnalysisError: The device table cannot be read, or does not yield a factor.
     """
-    ranks = None
-    if outlook.draws is not None:
-        ranks = rank_uncertainty(outlook.draws, outlook.fits, outlook.labels, options.level)
     return Conclusions(
-        rank_uncertainty=ranks,
+        rank_uncertainty=rank_uncertainty(outlook, options.level),
         attribution=attribute(table.levels, outlook.terms, outlook.coef, outlook.value, rng),
-        averaging=average(
-            state.levels, state.steps[-1].response, state.transform, options.level, rng
-        ),
+        averaging=average(outlook.levels, outlook.response, outlook.spread, options.level, rng),
         purchase=_purchase(table, outlook, options),
     )
 
@@ -57,14 +50,4 @@ def _purchase(table: RunTable, outlook: Outlook, options: Options) -> Purchase |
     """Price the sets, if a device table is given or the default one fits the factors."""
     devices = read_devices(options.devices)
     meant = options.devices is not None or set(table.factors) == devices.letters
-    if outlook.draws is None or not meant:
-        return None
-    return purchase(
-        outlook.labels,
-        outlook.fits,
-        outlook.draws,
-        outlook.ranking[0],
-        devices,
-        options.level,
-        options.delta,
-    )
+    return purchase(outlook, devices, options.level, options.delta) if meant else None

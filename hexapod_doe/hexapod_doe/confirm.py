@@ -14,7 +14,7 @@ import numpy as np
 from hexapod_doe.draws import interval_of
 from hexapod_doe.errors import AnalysisError
 from hexapod_doe.findings import Confirmation, ConfirmationCheck
-from hexapod_doe.outlook import Outlook
+from hexapod_doe.outlook import Outlook, Stated
 from hexapod_doe.plan_types import Confirmation as Rule
 
 _TOP = 3
@@ -36,7 +36,8 @@ def confirm(
     Raises:
         AnalysisError: A set has fewer runs than the rule asks for, or is unknown.
     """
-    if outlook.future_mean is None:
+    stated = outlook.stated
+    if stated is None:
         return None
     unknown = [label for label in observed if label not in outlook.labels]
     if unknown:
@@ -51,32 +52,34 @@ def confirm(
     wanted = dict.fromkeys((*outlook.ranking[:_TOP], *observed))
     sizes = {label: len(observed.get(label, ())) or rule.runs for label in wanted}
     bounds = {
-        size: interval_of(outlook.future_mean(size), rule.level) for size in set(sizes.values())
+        size: interval_of(stated.future_mean(size), rule.level) for size in set(sizes.values())
     }
     return Confirmation(
         level=rule.level,
         runs=rule.runs,
-        rule=f'{rule.rule} The interval comes from the {outlook.model}.',
+        rule=f'{rule.rule} The interval comes from the {outlook.model} before elimination.',
         checks=tuple(
-            _check(outlook, label, bounds[sizes[label]], observed.get(label, ()), sizes[label])
-            for label in wanted
+            _check(
+                label, outlook.labels.index(label), stated, bounds, observed.get(label, ()), size
+            )
+            for label, size in sizes.items()
         ),
     )
 
 
 def _check(
-    outlook: Outlook,
     label: str,
-    bounds: tuple[np.ndarray, np.ndarray],
+    index: int,
+    stated: Stated,
+    bounds: Mapping[int, tuple[np.ndarray, np.ndarray]],
     values: Sequence[float],
     runs: int,
 ) -> ConfirmationCheck:
-    index = outlook.labels.index(label)
-    low, high = float(bounds[0][index]), float(bounds[1][index])
+    low, high = (float(bound[index]) for bound in bounds[runs])
     mean = float(np.mean(values)) if len(values) else None
     return ConfirmationCheck(
         label=label,
-        predicted=float(outlook.fits[index]),
+        predicted=float(stated.fits[index]),
         interval=(low, high),
         runs=runs,
         observed=tuple(map(float, values)),

@@ -36,12 +36,14 @@ def prediction_draws(
     draws: int,
     rng: np.random.Generator,
 ) -> np.ndarray:
-    """Draw the predictions of some points in original units (draws, m).
-
-    Below the domain of the transform a draw is the smallest value that the transform knows.
-    """
+    """Draw the predictions of some points in original units (draws, m)."""
     coef, _ = coefficient_draws(fit, draws, rng)
-    values = back(coef @ points.T, transform)
+    return back_draws(coef @ points.T, transform)
+
+
+def back_draws(eta: np.ndarray, transform: Transform | None) -> np.ndarray:
+    """Return draws in original units; below the transform's domain its smallest value."""
+    values = back(eta, transform)
     return values if transform is None else np.nan_to_num(values, nan=-transform.shift)
 
 

@@ -1,7 +1,10 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""From statistics to a purchase: prices, Pareto front, cheapest set not worse, breakage."""
+"""From statistics to a purchase: prices, Pareto front, cheapest set not worse, breakage.
+
+Decisions come from the draws of the selected model, numbers with intervals from the stated one.
+"""
 
 from collections.abc import Sequence
 
@@ -11,37 +14,67 @@ from hexapod_doe.devices import DeviceTable
 from hexapod_doe.draws import interval_of
 from hexapod_doe.findings import Breakage, Device, PricedSet, Purchase
 from hexapod_doe.model import EMPTY_SET
+from hexapod_doe.outlook import Outlook, Stated
 
 
 def purchase(
-    labels: Sequence[str],
-    fits: np.ndarray,
-    draws: np.ndarray,
-    choice: str,
-    table: DeviceTable,
-    level: float,
-    delta: float | None = None,
-) -> Purchase:
+    outlook: Outlook, table: DeviceTable, level: float, delta: float | None = None
+) -> Purchase | None:
     """Price every combination and weigh it against its reward.
 
     Args:
-        labels: The combinations (m).
-        fits: Their expected reward (m,).
-        draws: Draws of it (draws, m).
-        choice: The set that statistics alone recommend.
+        outlook: Values of the combinations.
         table: The devices.
         level: Confidence of the intervals.
         delta: What a set may be worse than the best, in reward units; None for the table's share.
+
+    Returns:
+        None where the model leaves no error.
     """
+    if outlook.draws is None or outlook.stated is None:
+        return None
     if delta is None:
-        delta = table.delta_share * abs(float(np.nanmax(fits)))
-    devices = [table.cheapest(letters_of(label)) for label in labels]
+        delta = table.delta_share * abs(float(np.nanmax(outlook.fits)))
+    devices = [table.cheapest(letters_of(label)) for label in outlook.labels]
     cost = np.array([sum(device.cost for device in needed) for needed in devices])
-    not_worse = (draws >= draws.max(axis=1, keepdims=True) - delta).mean(axis=0)
-    low, high = interval_of(draws, level)
-    front = pareto(cost, fits[None, :])[0]
-    p_front = pareto(cost, draws).mean(axis=0)
-    sets = tuple(
+    best = outlook.draws.max(axis=1, keepdims=True)
+    not_worse = (outlook.draws >= best - delta).mean(axis=0)
+    p_front = pareto(cost, outlook.draws).mean(axis=0)
+    sets = _priced_sets(outlook, outlook.stated, devices, cost, p_front, not_worse, level)
+    cheapest, rule = cheapest_not_worse(
+        outlook.labels, cost, not_worse, outlook.fits, table.confidence
+    )
+    return Purchase(
+        devices=table.devices,
+        currency=table.currency,
+        delta=float(delta),
+        confidence=table.confidence,
+        sets=sets,
+        front=tuple(sets[i].label for i in np.argsort(cost, kind='stable') if sets[i].on_front),
+        cheapest=cheapest,
+        cheapest_rule=rule,
+        breakage=tuple(
+            loss
+            for label in dict.fromkeys((outlook.ranking[0], cheapest))
+            for loss in breakage(
+                label, outlook.labels, devices[outlook.labels.index(label)], outlook.stated, level
+            )
+        ),
+    )
+
+
+def _priced_sets(
+    outlook: Outlook,
+    stated: Stated,
+    devices: Sequence[Sequence[Device]],
+    cost: np.ndarray,
+    p_front: np.ndarray,
+    not_worse: np.ndarray,
+    level: float,
+) -> tuple[PricedSet, ...]:
+    low, high = interval_of(stated.draws, level)
+    front = pareto(cost, stated.fits[None, :])[0]
+    return tuple(
         PricedSet(
             label=label,
             devices=tuple(device.name for device in devices[i]),
@@ -49,31 +82,13 @@ def purchase(
             mass=sum(device.mass for device in devices[i]),
             power=sum(device.power for device in devices[i]),
             failure_probability=any_breaks(devices[i]),
-            fit=float(fits[i]),
+            fit=float(stated.fits[i]),
             ci=(float(low[i]), float(high[i])),
             p_front=float(p_front[i]),
             on_front=bool(front[i]),
             p_not_worse=float(not_worse[i]),
         )
-        for i, label in enumerate(labels)
-    )
-    cheapest, rule = cheapest_not_worse(labels, cost, not_worse, fits, table.confidence)
-    wanted = dict.fromkeys((choice, cheapest))
-    on_front = [i for i in np.argsort(cost, kind='stable') if front[i]]
-    return Purchase(
-        devices=table.devices,
-        currency=table.currency,
-        delta=float(delta),
-        confidence=table.confidence,
-        sets=sets,
-        front=tuple(labels[i] for i in on_front),
-        cheapest=cheapest,
-        cheapest_rule=rule,
-        breakage=tuple(
-            loss
-            for label in wanted
-            for loss in breakage(label, labels, devices[labels.index(label)], fits, draws, level)
-        ),
+        for i, label in enumerate(outlook.labels)
     )
 
 
@@ -138,8 +153,7 @@ def breakage(
     label: str,
     labels: Sequence[str],
     devices: Sequence[Device],
-    fits: np.ndarray,
-    draws: np.ndarray,
+    stated: Stated,
     level: float,
 ) -> tuple[Breakage, ...]:
     """Return what each device of a set is worth: the reward lost without what it alone yields."""
@@ -149,15 +163,15 @@ def breakage(
         others = set(''.join(device.yields for device in devices if device is not broken))
         left = ''.join(letter for letter in letters_of(label) if letter in others) or EMPTY_SET
         rest = labels.index(left)
-        low, high = interval_of(draws[:, whole] - draws[:, rest], level)
+        low, high = interval_of(stated.draws[:, whole] - stated.draws[:, rest], level)
         result.append(
             Breakage(
                 label=label,
                 device=broken.name,
                 lost=''.join(letter for letter in letters_of(label) if letter not in others),
                 remaining=left,
-                fit=float(fits[rest]),
-                loss=float(fits[whole] - fits[rest]),
+                fit=float(stated.fits[rest]),
+                loss=float(stated.fits[whole] - stated.fits[rest]),
                 loss_ci=(float(low), float(high)),
             )
         )

@@ -8,35 +8,49 @@ from collections.abc import Sequence
 import numpy as np
 
 from hexapod_doe.findings import RankUncertainty
+from hexapod_doe.outlook import Outlook
 
 
-def rank_uncertainty(
-    draws: np.ndarray, fits: np.ndarray, labels: Sequence[str], level: float
-) -> RankUncertainty:
-    """Rank each draw and summarise.
+def rank_uncertainty(outlook: Outlook, level: float) -> RankUncertainty | None:
+    """Summarise the ranks of the combinations.
+
+    The probabilities and groups come from draws of the selected model, the rank intervals from
+    the one before selection, each of which is true to the frequencies in its own (see
+    `outlook`).
 
     Args:
-        draws: Draws of the values (draws, m).
-        fits: Point values (m,), by which the groups are ordered.
-        labels: Names (m,).
+        outlook: Values of the combinations.
         level: Confidence of the rank intervals and of the groups.
+
+    Returns:
+        None where the model leaves no error.
     """
-    ranks = np.empty(draws.shape, dtype=np.int32)
-    np.put_along_axis(
-        ranks, np.argsort(-draws, axis=1, kind='stable'), np.arange(1, draws.shape[1] + 1), axis=1
-    )
+    if outlook.draws is None or outlook.stated is None:
+        return None
+    ranks = ranks_of(outlook.draws)
     low, high = np.quantile(
-        ranks, [(1 - level) / 2, (1 + level) / 2], axis=0, method='inverted_cdf'
+        ranks_of(outlook.stated.draws),
+        [(1 - level) / 2, (1 + level) / 2],
+        axis=0,
+        method='inverted_cdf',
     )
     return RankUncertainty(
-        draws=len(draws),
-        p_best=_map(labels, (ranks == 1).mean(axis=0)),
-        p_top3=_map(labels, (ranks <= 3).mean(axis=0)),
+        draws=len(outlook.draws),
+        p_best=_map(outlook.labels, (ranks == 1).mean(axis=0)),
+        p_top3=_map(outlook.labels, (ranks <= 3).mean(axis=0)),
         rank_interval={
-            label: (int(a), int(b)) for label, a, b in zip(labels, low, high, strict=True)
+            label: (int(a), int(b)) for label, a, b in zip(outlook.labels, low, high, strict=True)
         },
-        groups=groups(draws, fits, labels, level),
+        groups=groups(outlook.draws, outlook.fits, outlook.labels, level),
     )
+
+
+def ranks_of(draws: np.ndarray) -> np.ndarray:
+    """Return the ranks within each draw, 1 for the highest value (draws, m)."""
+    ranks = np.empty(draws.shape, dtype=np.int32)
+    order = np.argsort(-draws, axis=1, kind='stable')
+    np.put_along_axis(ranks, order, np.arange(1, draws.shape[1] + 1), axis=1)
+    return ranks
 
 
 def groups(

@@ -34,6 +34,9 @@ class Parts:
     success: Fit
     failed: np.ndarray
     """Responses of the failed runs."""
+    levels: pd.DataFrame
+    response: np.ndarray
+    """Levels and responses of the successful runs."""
 
     def point(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return P(failure), reward given success and expected reward of all 2^k (2^k,)."""
@@ -65,7 +68,11 @@ class PartDraws:
     @property
     def expected(self) -> np.ndarray:
         """Expected reward of a run (draws, 2^k)."""
-        return (1 - self.pi) * self.mu + self.pi * self.mean_failed[:, None]
+        return self.mixed_with(self.mu)
+
+    def mixed_with(self, mu: np.ndarray) -> np.ndarray:
+        """Return draws of the expected reward for draws of the reward given success."""
+        return (1 - self.pi) * mu + self.pi * self.mean_failed[:, None]
 
     def future_mean(self, runs: int, rng: np.random.Generator) -> np.ndarray:
         """Draw the mean of some new runs of each combination (draws, 2^k)."""
@@ -121,6 +128,8 @@ def _fit(
         failure=firth(model_matrix(levels, failure_terms), failed.astype(float)),
         success=ols(levels[~failed], values[~failed], success),
         failed=values[failed],
+        levels=levels[~failed],
+        response=values[~failed],
     )
 
 
