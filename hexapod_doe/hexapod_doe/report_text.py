@@ -1,0 +1,226 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The report's sentences: what was found, how sure it is, and what to know before believing it.
+
+Every sentence is derived from the numbers of the analysis.
+"""
+
+from dataclasses import dataclass
+
+from hexapod_doe.formats import (
+    MISSING,
+    capitalised,
+    chance,
+    count,
+    interval,
+    listing,
+    number,
+    percent,
+    signed,
+)
+from hexapod_doe.planner import FULL_TRAINING
+from hexapod_doe.results import Analysis, Prediction
+
+TOUR_EPISODES = 100
+"""With fewer episodes than this an agent has hardly begun to learn."""
+FEW_REPLICATES = 3
+"""With fewer runs per case than this, one failed training can move a conclusion."""
+
+
+@dataclass(frozen=True)
+class Fact:
+    """One number at the head of the report."""
+
+    label: str
+    value: str
+    note: str
+
+
+def episodes(analysis: Analysis) -> int | None:
+    """Return the episodes of the longest training; None where no learning curves are known."""
+    if analysis.curves.empty:
+        return None
+    return int(analysis.curves.groupby('run_id')['episode'].nunique().max())
+
+
+def caution(analysis: Analysis) -> str:
+    """Return the first line of a report on little data; empty where there is enough."""
+    length, replicates = episodes(analysis), analysis.design.replicates[1]
+    single = replicates == 1
+    if length is not None and length < TOUR_EPISODES:
+        tail = ', and with one run per case chance passes for an effect' if single else ''
+        return (
+            f'{capitalised(count(length, "episode"))} {"is" if length == 1 else "are"} a tour, '
+            f'not a conclusion: the agents have hardly begun to learn{tail}. This page shows '
+            'what the method says, not which sensors to buy.'
+        )
+    if length is not None and length < FULL_TRAINING / 2:
+        return (
+            f'{length} episodes are an interim result: a whole training has {FULL_TRAINING}, and '
+            'the order of the sets may still change.'
+        )
+    if single:
+        return (
+            'One run per case is a sketch, not a conclusion: how much runs of one case differ by '
+            'chance is unknown.'
+        )
+    if replicates < FEW_REPLICATES:
+        return (
+            f'{capitalised(count(replicates, "run"))} per case are few: a failed training weighs.'
+        )
+    return ''
+
+
+def headline(analysis: Analysis) -> str:
+    """Return the answer in one sentence."""
+    chosen = chosen_prediction(analysis)
+    if not distinguishes(analysis):
+        return f'No set of sensors stands out yet; {name_of(chosen)} comes first'
+    return f'Choose {name_of(chosen)}'
+
+
+def distinguishes(analysis: Analysis) -> bool:
+    """Tell whether the final model predicts runs that it has not seen better than their mean."""
+    predicted = analysis.final.r2_pred
+    return predicted is not None and predicted > 0
+
+
+def chosen_prediction(analysis: Analysis) -> Prediction:
+    """Return the final model's prediction of the chosen set."""
+    return next(p for p in analysis.predictions if p.label == analysis.choice)
+
+
+def name_of(prediction: Prediction) -> str:
+    """Return a set's letters, or words for the set without any."""
+    on = ''.join(factor for factor, level in prediction.levels.items() if level > 0)
+    return on or 'no optional sensor'
+
+
+def sensors_of(analysis: Analysis, prediction: Prediction) -> str:
+    """Return the names of a set's sensors for a sentence."""
+    names = analysis.design.factor_names
+    on = [names.get(f, f) for f, level in prediction.levels.items() if level > 0]
+    return listing(on, limit=len(on)) or 'only what is always observed'
+
+
+def facts(analysis: Analysis) -> list[Fact]:
+    """Return the numbers that stand at the head of the report."""
+    best = chosen_prediction(analysis)
+    every = max(analysis.predictions, key=lambda p: sum(p.levels.values()))
+    level = f'{100 * analysis.level:g} %'
+    found = [
+        Fact(
+            f'predicted {analysis.response.replace("_", " ")}',
+            number(best.fit),
+            f'{level} interval {interval(best.ci)}',
+        ),
+        Fact('against all sensors', signed(best.fit - every.fit), f'all: {number(every.fit)}'),
+        _certainty(analysis, best),
+    ]
+    if analysis.purchase is not None:
+        bought = next(s for s in analysis.purchase.sets if s.label == analysis.purchase.cheapest)
+        price = f'{number(bought.cost)} {analysis.purchase.currency}'
+        found.append(Fact('cheapest set not worse', bought.label, price))
+    return found
+
+
+def sureness(analysis: Analysis) -> list[str]:
+    """Return sentences on how far the answer can be trusted."""
+    best = chosen_prediction(analysis)
+    sentences = [_data(analysis), _model(analysis)]
+    if not best.tested:
+        sentences.append(
+            f'{best.label} was not trained in this campaign: its reward is a prediction until '
+            'runs confirm it.'
+        )
+    if not best.alias_safe:
+        sentences.append(_alias_warning(analysis))
+    if analysis.rank_uncertainty is not None:
+        sentences.append(_rank(analysis))
+    if analysis.two_part is not None and analysis.two_part.failures:
+        sentences.append(_failures(analysis))
+    return sentences
+
+
+def _certainty(analysis: Analysis, best: Prediction) -> Fact:
+    if analysis.rank_uncertainty is not None:
+        first = analysis.rank_uncertainty.p_best.get(best.label)
+        top = analysis.rank_uncertainty.p_top3.get(best.label)
+        return Fact('chance to be the best set', chance(first), f'in the top 3: {chance(top)}')
+    rivals = sum(
+        best.ci[0] is not None and p.ci[1] is not None and p.ci[1] >= best.ci[0]
+        for p in analysis.predictions
+        if p is not best
+    )
+    text = f'{rivals}' if best.ci[0] is not None else MISSING
+    return Fact(
+        'sets not told from it', text, f'of {len(analysis.predictions)}, intervals overlap'
+    )
+
+
+def _data(analysis: Analysis) -> str:
+    design = analysis.design
+    low, high = design.replicates
+    runs = f'{low}' if low == high else f'{low} to {high}'
+    length = episodes(analysis)
+    trained = f', {count(length, "episode")} each' if length is not None else ''
+    others = ' and '.join(
+        f'the {other.design.name} ({other.design.runs} runs)' for other in analysis.compared
+    )
+    compared = f'; compared with {others}' if others else ''
+    return (
+        f'Data: {design.runs} trainings, {design.cases} cases × {runs}{trained} '
+        f'({design.name}{compared}).'
+    )
+
+
+def _model(analysis: Analysis) -> str:
+    final = analysis.final
+    terms = f'The final model has {count(len(final.terms), "term")}'
+    if final.r2 is None or final.df_error == 0:
+        return f'{terms} and no error left to judge it by.'
+    text = f'{terms} and explains {percent(final.r2)} of the variance of the fitted runs'
+    if final.r2_pred is None:
+        return f'{text}; how it predicts new runs cannot be computed.'
+    if final.r2_pred <= 0:
+        return f'{text}, but predicts runs left out of the fit worse than their mean would.'
+    cases = ''
+    if final.r2_pred_cases is not None:
+        cases = f', and {percent(final.r2_pred_cases)} for whole cases left out'
+    return f'{text}; for runs left out of the fit it predicts {percent(final.r2_pred)}{cases}.'
+
+
+def _alias_warning(analysis: Analysis) -> str:
+    mixed = [
+        analysis.final.aliases[term]
+        for term in analysis.final.terms
+        if ' ' in analysis.final.aliases.get(term, '')
+    ]
+    text = (
+        f'{analysis.choice} depends on which name a confounded sum is given '
+        f'({listing(mixed, 3)}): more cases can separate them (plan augment).'
+    )
+    if analysis.attribution is not None and len(analysis.attribution.winners) > 1:
+        winners = sorted(analysis.attribution.winners.items(), key=lambda item: -item[1])
+        total = sum(analysis.attribution.winners.values())
+        shares = [f'{label} in {ways} of {total}' for label, ways in winners]
+        text += f' Equally good namings choose {listing(shares, 4)}.'
+    return text
+
+
+def _rank(analysis: Analysis) -> str:
+    ranks = analysis.rank_uncertainty
+    assert ranks is not None  # the caller has looked
+    group = next((g for g in ranks.groups if analysis.choice in g), (analysis.choice,))
+    others = [label for label in group if label != analysis.choice]
+    if not others:
+        return f'No other set is within reach of {analysis.choice} in the same data.'
+    return f'Cannot be told from it with these data: {listing(others, 6)}.'
+
+
+def _failures(analysis: Analysis) -> str:
+    parts = analysis.two_part
+    assert parts is not None  # the caller has looked
+    same = ' as well' if parts.choice == analysis.choice else ''
+    return f'Weighed by the chance of a failed training, {parts.choice} comes first{same}.'
