@@ -23,6 +23,7 @@ from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Trigger
 
 from hexapod_doe.bag_file import BagFile, RawMessage
+from hexapod_doe.errors import BagError
 from hexapod_doe.playback import Frame, Playback
 from hexapod_doe.rosbag2 import OfferedQos
 
@@ -79,6 +80,8 @@ class PlayerNode(Node):
             loop=bool(self._value('loop')),
             paused=bool(self._value('paused')),
         )
+        if self._playback.finished:
+            raise BagError(f'bag {self._bag.path}: empty, expected a message to play')
         self._played = 0
         self.create_service(Trigger, '~/pause', self._on_pause)
         self.create_service(Trigger, '~/resume', self._on_resume)

@@ -50,12 +50,12 @@ PARAMETERS = (
     ),
     _seconds(
         'drain_timeout',
-        2.0,
+        6.0,  # two heartbeats of DDS, at which it sends again what was lost
         'How long to wait at the end of a sampled episode for its last samples.',
     ),
     _seconds(
         'result_timeout',
-        2.0,
+        6.0,
         'How long to wait at the end of a run for its last episode results.',
     ),
 )
@@ -230,11 +230,16 @@ class RecorderNode(Node):
     def _abandon(self, reason: str) -> None:
         recording, self._recording = self._recording, None
         self._samples.close()
-        if recording is not None:
-            partial_bag = recording.abandon()
-            self.get_logger().warning(
-                f'run {recording.run_id} ends unfinished, {reason}; its bag stays {partial_bag}'
-            )
+        if recording is None:
+            return
+        try:
+            left = recording.abandon()
+        except BagError as error:
+            self._fail(error)
+            return
+        self.get_logger().warning(
+            f'run {recording.run_id} ends unfinished, {reason}; its bag stays {left}'
+        )
 
     def _seconds(self, parameter: str) -> float:
         return float(self.get_parameter(parameter).value)

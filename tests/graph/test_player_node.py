@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 from hexapod_doe.bag_writer import BagWriter
+from hexapod_doe.errors import BagError
 from hexapod_doe.player_node import PlayerNode
 from hexapod_doe.rosbag2 import OfferedQos, Topic
 from hexapod_node.qos import RECORD
@@ -158,11 +159,17 @@ def test_publishers_offer_what_was_recorded(graph, tmp_path, offered):
     reliability, durability = offered
     qos = OfferedQos(reliability=reliability, durability=durability)
     with BagWriter(tmp_path / 'b', {}) as writer:
-        writer.add_topic(Topic('/imu', 'sensor_msgs/msg/Imu', (qos,)))
+        writer.add_topic(Topic('/joints', 'sensor_msgs/msg/JointState', (qos,)))
+        writer.write('/joints', joints(0), 0)
     player = add_player(graph, tmp_path / 'b')
-    (info,) = player.get_publishers_info_by_topic('/imu')
+    (info,) = player.get_publishers_info_by_topic('/joints')
     assert info.qos_profile.reliability.name.lower() == reliability
     assert info.qos_profile.durability.name.lower() == durability
+
+
+def test_nothing_to_play_is_refused(graph, bag):
+    with pytest.raises(BagError, match='empty, expected a message to play'):
+        add_player(graph, bag, start=2.0)
 
 
 @pytest.mark.system
