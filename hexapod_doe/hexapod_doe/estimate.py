@@ -107,7 +107,7 @@ def _within_cases(
     squared = np.array([np.bincount(case, row**2) for row in weights])
     parts = squared * variance
     total = parts.sum(axis=1)
-    df = total**2 / (parts**2 / (count - 1)).sum(axis=1)
-    half = stats.t.ppf((1 + level) / 2, df) * np.sqrt(total)
+    df = total**2 / np.maximum((parts**2 / (count - 1)).sum(axis=1), np.finfo(float).tiny)
+    half = stats.t.ppf((1 + level) / 2, np.maximum(df, 1)) * np.sqrt(total)
     fits = weights @ response
     return fits - half, fits + half

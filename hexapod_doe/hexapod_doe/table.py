@@ -137,8 +137,8 @@ def _without_repeats(raw: pd.DataFrame) -> tuple[pd.DataFrame, tuple[str, ...]]:
     for key in (['run_id'], ['RunOrder'], ['case', 'replicate'], ['StdOrder', 'replicate']):
         if not set(key) <= set(raw.columns) or not raw.duplicated(key).any():
             continue
-        first = raw[raw.duplicated(key)].iloc[0]
-        name = ', '.join(f'{column} {first[column]}' for column in key)
+        first = raw.index[raw.duplicated(key)][0]
+        name = ', '.join(f'{column} {raw[column][first]}' for column in key)
         same = raw.duplicated()
         if not same[raw.duplicated(key)].all():
             raise TableError(f'{name} occurs twice with different results, expected it once')

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+
 from hexapod_doe import analyze
 
 DATA = Path(__file__).parents[1] / 'data' / 'doe_cases'
