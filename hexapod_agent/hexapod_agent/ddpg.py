@@ -51,7 +51,8 @@ class Ddpg:
         target_smoothing: Share of the online network that moves into its target per update.
         generator: Draws the initial weights.
         agents: Independent agents that learn side by side.
-        dtype: Number format of everything.
+        dtype: Number format of parameters, losses and optimisers.
+        hidden_dtype: Number format of the hidden layers in an update; `dtype` if None.
     """
 
     def __init__(
@@ -65,6 +66,7 @@ class Ddpg:
         generator: torch.Generator,
         agents: int = 1,
         dtype: torch.dtype = torch.float32,
+        hidden_dtype: torch.dtype | None = None,
     ) -> None:
         sizes = (observation_size, action_size)
         self._actor_config = actor
@@ -86,11 +88,16 @@ class Ddpg:
             self.critic_parameters, critic.learning_rate, critic.l2, critic.gradient_threshold
         )
 
+        # Acting stays in the full format; the updates' hidden layers may not.
         self._policy = Actor(self.actor_parameters, 1)
-        self._actor = Actor(self.actor_parameters, batch_size, self._actor_optimizer.gradients)
-        self._critic = Critic(self.critic_parameters, batch_size, self._critic_optimizer.gradients)
-        self._target_actor = Actor(self._actor_target_parameters, batch_size)
-        self._target_critic = Critic(self._critic_target_parameters, batch_size)
+        actor_gradients = self._actor_optimizer.gradients
+        critic_gradients = self._critic_optimizer.gradients
+        self._actor = Actor(self.actor_parameters, batch_size, actor_gradients, hidden_dtype)
+        self._critic = Critic(self.critic_parameters, batch_size, critic_gradients, hidden_dtype)
+        self._target_actor = Actor(self._actor_target_parameters, batch_size, None, hidden_dtype)
+        self._target_critic = Critic(
+            self._critic_target_parameters, batch_size, None, hidden_dtype
+        )
 
     def _inner(self, tensor: Tensor) -> Tensor:
         """Drop the leading dimension of a stack of one, as the layers expect."""
@@ -110,6 +117,8 @@ class Ddpg:
             (self._actor_target_parameters, self.actor_parameters),
         ):
             target.flat.lerp_(online.flat, self._smoothing)
+        self._target_actor.refresh()
+        self._target_critic.refresh()
         return UpdateStatistics(critic_loss.view(-1), actor_loss.view(-1), mean_q.view(-1))
 
     def _update_critic(self) -> Tensor:
@@ -122,8 +131,9 @@ class Ddpg:
         error = self._critic.forward(batch.observation, batch.action).sub_(target)
         loss = torch.mean(error * error, dim=-2)
         error.mul_(2.0 / error.shape[-2])
-        self._critic.backward(batch.observation, batch.action, error)
+        self._critic.backward(error)
         self._critic_optimizer.step()
+        self._critic.refresh()
         return loss
 
     def _update_actor(self) -> tuple[Tensor, Tensor]:
@@ -142,11 +152,10 @@ class Ddpg:
             loss = loss + config.preactivation_penalty * penalty.unsqueeze(-1)
         value.copy_((-1.0 / (scale * value.shape[-2])).unsqueeze(-2).expand_as(value))
         self._actor.backward(
-            batch.observation,
-            self._critic.action_gradient(value),
-            2.0 * config.preactivation_penalty / count,
+            self._critic.action_gradient(value), 2.0 * config.preactivation_penalty / count
         )
         self._actor_optimizer.step()
+        self._actor.refresh()
         return loss, mean_q
 
     def state_dict(self) -> dict[str, Any]:
@@ -162,6 +171,8 @@ class Ddpg:
             part.flat.copy_(state[name])
         self._actor_optimizer.load_state_dict(state['actor_optimizer'])
         self._critic_optimizer.load_state_dict(state['critic_optimizer'])
+        for network in (self._actor, self._critic, self._target_actor, self._target_critic):
+            network.refresh()
 
     def _stacks(self) -> dict[str, ParameterStack]:
         return {

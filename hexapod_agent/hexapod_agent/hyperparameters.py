@@ -98,11 +98,13 @@ class TrainingConfig:
         episodes: Episodes of a run.
         window: Last returns that the final average reward is the mean of.
         checkpoint_every: Episodes between two checkpoints.
-        matmul_precision: 'highest' keeps torch's default product of float32 matrices; 'medium'
-            lets it take the machine's fastest, which may round the factors to bfloat16.
+        precision: Arithmetic of an update. 'float32' is torch's default. 'float32_fast' takes
+            the machine's fastest product of float32 matrices, which may round the factors
+            where the machine has units for that. 'bfloat16' computes hidden layers so; the
+            parameters, output layers, losses and optimisers stay float32, and so does acting.
     """
 
     episodes: int
     window: int
     checkpoint_every: int
-    matmul_precision: Literal['highest', 'medium']
+    precision: Literal['float32', 'float32_fast', 'bfloat16']

@@ -5,7 +5,8 @@
 
 Written out, the actor step computes only what its formula needs: no gradient of the critic's
 weights and none through the critic's observation branch. Tests hold it against autograd.
-Tensors have the shapes that `layers` tells.
+Tensors have the shapes that `layers` tells. Hidden layers may compute in a shorter number format
+(`dtype`); the output layers, what they get and what they give stay in that of the parameters.
 """
 
 import math
@@ -15,7 +16,7 @@ from itertools import pairwise
 import torch
 from torch import Tensor
 
-from hexapod_agent.layers import Dense, layer_shapes, relu_backward
+from hexapod_agent.layers import Cast, Dense, layer_shapes, relu_backward
 from hexapod_agent.parameters import ParameterStack
 
 OUTPUT_BOUND = 5e-3  # of the output layers' initial weights
@@ -39,6 +40,7 @@ class Actor:
         parameters: Layout of `Actor.shapes`.
         batch: Observations per pass.
         gradients: Filled by `backward`; None for a pass that never goes back.
+        dtype: Number format of the hidden layers; that of the parameters if None.
     """
 
     @staticmethod
@@ -52,32 +54,43 @@ class Actor:
         return shapes | layer_shapes('output', hidden[-1], action_size)
 
     def __init__(
-        self, parameters: ParameterStack, batch: int, gradients: ParameterStack | None = None,
-    ) -> None:  # fmt: skip
-        self._layers = [
-            Dense(parameters, gradients, name.removesuffix('.weight'), batch)
-            for name in parameters.shapes
-            if name.endswith('.weight')
-        ]
-        self.preactivation = self._layers[-1].output
+        self,
+        parameters: ParameterStack,
+        batch: int,
+        gradients: ParameterStack | None = None,
+        dtype: torch.dtype | None = None,
+    ) -> None:
+        wide = parameters.flat.dtype
+        narrow = dtype or wide
+        self._hidden = _branch(parameters, gradients, 'hidden', batch, narrow)
+        self._output = Dense(parameters, gradients, 'output', batch, wide)
+        last = self._hidden[-1].output
+        self._widen = Cast(last, wide)
+        self._narrow = Cast(last.to(wide), narrow)
+        first = self._hidden[0]
+        self._narrow_input = Cast(first.input_like(wide), narrow)
+        self.preactivation = self._output.output
         self.action = torch.empty_like(self.preactivation)
         self._slope = torch.empty_like(self.preactivation)
 
+    def refresh(self) -> None:
+        """Take over parameters that have moved."""
+        for layer in self._hidden:
+            layer.refresh()
+
     def forward(self, observation: Tensor) -> Tensor:
         """Actions of a batch, in the buffer `action`; `preactivation` holds them before tanh."""
-        x = observation
-        for layer in self._layers[:-1]:
+        self._x = x = self._narrow_input(observation)
+        for layer in self._hidden:
             x = torch.relu_(layer.forward(x))
-        self._layers[-1].forward(x)
+        self._features = self._widen(x)
+        self._output.forward(self._features)
         return torch.tanh(self.preactivation, out=self.action)
 
-    def backward(
-        self, observation: Tensor, action_gradient: Tensor, preactivation_factor: float
-    ) -> None:
-        """Fill the gradients of the pass that `forward` made.
+    def backward(self, action_gradient: Tensor, preactivation_factor: float) -> None:
+        """Fill the gradients of the last `forward`.
 
         Args:
-            observation: The batch given to `forward`.
             action_gradient: Gradient of the loss with respect to the actions; overwritten.
             preactivation_factor: c of a further term c/2 sum(z²) of the loss.
         """
@@ -87,10 +100,9 @@ class Actor:
             action_gradient, action_gradient, self._slope, value=-1.0, out=action_gradient
         )
         gradient.add_(self.preactivation, alpha=preactivation_factor)
-        for below, layer in zip(self._layers[-2::-1], self._layers[:0:-1], strict=True):
-            layer.backward(below.output, gradient)
-            gradient = relu_backward(layer.backward_input(gradient), below.output)
-        self._layers[0].backward(observation, gradient)
+        self._output.backward(self._features, gradient)
+        gradient = self._narrow(self._output.backward_input(gradient))
+        _branch_backward(self._hidden, self._x, relu_backward(gradient, self._hidden[-1].output))
 
 
 class Critic:
@@ -103,6 +115,7 @@ class Critic:
         parameters: Layout of `Critic.shapes`; tells which merge it is.
         batch: Pairs of observation and action per pass.
         gradients: Filled by `backward`; None for a pass that never goes back.
+        dtype: Number format of the branches; that of the parameters if None.
     """
 
     @staticmethod
@@ -118,53 +131,86 @@ class Critic:
         return shapes | layer_shapes('output', merged, 1)
 
     def __init__(
-        self, parameters: ParameterStack, batch: int, gradients: ParameterStack | None = None,
-    ) -> None:  # fmt: skip
-        self._observation = [
-            Dense(parameters, gradients, name.removesuffix('.weight'), batch)
-            for name in parameters.shapes
-            if name.startswith('observation') and name.endswith('.weight')
-        ]
-        self._action = Dense(parameters, gradients, 'action', batch)
-        self._output = Dense(parameters, gradients, 'output', batch)
+        self,
+        parameters: ParameterStack,
+        batch: int,
+        gradients: ParameterStack | None = None,
+        dtype: torch.dtype | None = None,
+    ) -> None:
+        wide = parameters.flat.dtype
+        narrow = dtype or wide
+        self._observation = _branch(parameters, gradients, 'observation', batch, narrow)
+        self._action = Dense(parameters, gradients, 'action', batch, narrow)
+        self._output = Dense(parameters, gradients, 'output', batch, wide)
+        self.value = self._output.output
+        self._merged = self._output.input_like(narrow)
+        self._widen = Cast(self._merged, wide)
+        self._narrow = Cast(self._merged.to(wide), narrow)
+        self._narrow_observation = Cast(self._observation[0].input_like(wide), narrow)
+        self._narrow_action = Cast(self._action.input_like(wide), narrow)
+        self._widen_gradient = Cast(self._action.input_like(narrow), wide)
         width = self._action.output.shape[-1]
-        self._append = self._output.weight.shape[-1] == 2 * width
-        shape = (*self._action.output.shape[:-1], self._output.weight.shape[-1])
-        self._merged = self._action.output.new_empty(shape)
+        self._append = self._merged.shape[-1] == 2 * width
         self._observation_part = slice(0, width)
         self._action_part = slice(width, 2 * width) if self._append else slice(0, width)
-        self.value = self._output.output
+
+    def refresh(self) -> None:
+        """Take over parameters that have moved."""
+        for layer in (*self._observation, self._action):
+            layer.refresh()
 
     def forward(self, observation: Tensor, action: Tensor) -> Tensor:
         """Values (..., batch, 1) in the buffer `value`."""
-        x = observation
+        self._s = x = self._narrow_observation(observation)
+        self._a = self._narrow_action(action)
         for layer in self._observation[:-1]:
             x = torch.relu_(layer.forward(x))
         last = self._observation[-1]
         if self._append:
             self._merged[..., self._observation_part] = last.forward(x)
-            self._merged[..., self._action_part] = self._action.forward(action)
+            self._merged[..., self._action_part] = self._action.forward(self._a)
         else:
-            self._action.add_to(last.forward(x, out=self._merged), action)
-        torch.relu_(self._merged)
-        return self._output.forward(self._merged)
+            self._action.add_to(last.forward(x, out=self._merged), self._a)
+        self._features = self._widen(torch.relu_(self._merged))
+        return self._output.forward(self._features)
 
-    def backward(self, observation: Tensor, action: Tensor, value_gradient: Tensor) -> None:
-        """Fill the gradients of the pass that `forward` made, given dL/dQ (..., batch, 1)."""
-        self._output.backward(self._merged, value_gradient)
+    def backward(self, value_gradient: Tensor) -> None:
+        """Fill the gradients of the last `forward`, given dL/dQ (..., batch, 1)."""
+        self._output.backward(self._features, value_gradient)
         merged = self._merged_gradient(value_gradient)
-        self._action.backward(action, merged[..., self._action_part])
-        gradient = merged[..., self._observation_part]
-        for below, layer in zip(self._observation[-2::-1], self._observation[:0:-1], strict=True):
-            layer.backward(below.output, gradient)
-            gradient = relu_backward(layer.backward_input(gradient), below.output)
-        self._observation[0].backward(observation, gradient)
+        self._action.backward(self._a, merged[..., self._action_part])
+        _branch_backward(self._observation, self._s, merged[..., self._observation_part])
 
     def action_gradient(self, value_gradient: Tensor) -> Tensor:
         """Gradient with respect to the actions of the last `forward`, in a buffer."""
         merged = self._merged_gradient(value_gradient)
-        return self._action.backward_input(merged[..., self._action_part])
+        return self._widen_gradient(self._action.backward_input(merged[..., self._action_part]))
 
     def _merged_gradient(self, value_gradient: Tensor) -> Tensor:
         """Gradient before the ReLU that follows the merge."""
-        return relu_backward(self._output.backward_input(value_gradient), self._merged)
+        gradient = self._narrow(self._output.backward_input(value_gradient))
+        return relu_backward(gradient, self._merged)
+
+
+def _branch(
+    parameters: ParameterStack,
+    gradients: ParameterStack | None,
+    prefix: str,
+    batch: int,
+    dtype: torch.dtype,
+) -> list[Dense]:
+    """Make the layers '<prefix>0', '<prefix>1', ... that the parameters hold."""
+    names = [name.removesuffix('.weight') for name in parameters.shapes if 'weight' in name]
+    return [
+        Dense(parameters, gradients, name, batch, dtype)
+        for name in names
+        if name.startswith(prefix)
+    ]
+
+
+def _branch_backward(layers: list[Dense], x: Tensor, gradient: Tensor) -> None:
+    """Fill the gradients of layers with ReLU between them, given that of the last one's output."""
+    for below, layer in zip(layers[-2::-1], layers[:0:-1], strict=True):
+        layer.backward(below.output, gradient)
+        gradient = relu_backward(layer.backward_input(gradient), below.output)
+    layers[0].backward(x, gradient)

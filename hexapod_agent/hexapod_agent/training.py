@@ -44,7 +44,8 @@ class Trainer:
         self.spec, self.config, self.seed = spec, config, seed
         # One thread: a sum split over threads is not the same to the last bit.
         torch.set_num_threads(1)
-        torch.set_float32_matmul_precision(config.training.matmul_precision)
+        precision = config.training.precision
+        torch.set_float32_matmul_precision('highest' if precision == 'float32' else 'medium')
         init, noise, replay = np.random.SeedSequence(seed).spawn(3)
         self._replay_generator = np.random.default_rng(replay)
         self._noise_generator = np.random.default_rng(noise)
@@ -52,6 +53,7 @@ class Trainer:
         self.agent = Ddpg(
             spec.size, ACTION_SIZE, config.actor, config.critic, ddpg.batch_size,
             ddpg.target_smoothing, _torch_generator(init),
+            hidden_dtype=torch.bfloat16 if precision == 'bfloat16' else None,
         )  # fmt: skip
         self._replay = ReplayBuffer(
             ddpg.buffer_size, spec.size, ACTION_SIZE, ddpg.discount, ddpg.n_step

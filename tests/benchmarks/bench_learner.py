@@ -5,7 +5,7 @@
 
 Run: `python tests/benchmarks/bench_learner.py`. Sizes are those of ABCDE: 108 observations, 30
 actions, hidden layers of 400 and 300, batches of 128. stable-baselines3 is timed where it can be
-imported. Times are the best of several rounds: other load only ever adds.
+imported. Times are processor time, the best of several rounds: other load only ever adds.
 """
 
 import time
@@ -32,10 +32,10 @@ def milliseconds(call: Callable[[], object], repeats: int = REPEATS) -> float:
     """Best mean time of a call over the rounds."""
     best = float('inf')
     for _ in range(ROUNDS):
-        start = time.perf_counter()
+        start = time.process_time()
         for _ in range(repeats):
             call()
-        best = min(best, (time.perf_counter() - start) / repeats)
+        best = min(best, (time.process_time() - start) / repeats)
     return best * 1e3
 
 
@@ -65,9 +65,9 @@ def matrix_products(batch: int, sizes: tuple[int, int, int, int]) -> Callable[[]
     return multiply
 
 
-def full_trainer(letters: str = 'ABCDE') -> tuple[Trainer, HexapodLine]:
+def full_trainer(precision: str, letters: str = 'ABCDE') -> tuple[Trainer, HexapodLine]:
     """A trainer of the default configuration with a filled buffer, and its environment."""
-    config = AgentConfig.load()
+    config = AgentConfig.from_mapping({'training': {'precision': precision}}, 'benchmark')
     trainer, env = Trainer(ObservationSpec(letters), config, 1), HexapodLine(letters, config)
     observation, _ = env.reset(seed=1)
     trainer.begin_episode(0)
@@ -91,30 +91,29 @@ def time_baseline(trainer: Trainer, env: HexapodLine) -> float:
 
 def main() -> None:
     """Print the table."""
-    trainer, env = full_trainer()
+    updates = {}
+    for precision in ('float32', 'float32_fast', 'bfloat16'):
+        trainer, env = full_trainer(precision)
+        for _ in range(50):
+            trainer.learn()
+        updates[precision] = milliseconds(trainer.learn)
     config = trainer.config
     sizes = (trainer.spec.size, *config.actor.hidden, ACTION_SIZE)
     multiply = matrix_products(config.ddpg.batch_size, sizes)
-    for _ in range(50):
-        trainer.learn()
-        multiply()
-    update = milliseconds(trainer.learn)
-    products = milliseconds(multiply)
+    references = {'its matrix products alone, float32_fast': milliseconds(multiply)}
+    torch.set_float32_matmul_precision('highest')
+    references["the same by torch's default, float32"] = milliseconds(multiply)
+    if stable_baselines3:
+        name = f'update of stable-baselines3 {stable_baselines3.__version__}'
+        references[name] = time_baseline(trainer, env)
     action = np.zeros(ACTION_SIZE, np.float32)
     env.reset(seed=1)
-    step = milliseconds(lambda: env.step(action), 80)
+    references['step of the environment'] = milliseconds(lambda: env.step(action), 80)
 
-    table = Table('what', 'ms', 'update / this', title='one core, batch 128, ABCDE')
-    table.add_row('our update, sampling included', f'{update:.2f}', '')
-    table.add_row('its matrix products alone', f'{products:.2f}', f'{update / products:.2f}')
-    torch.set_float32_matmul_precision('highest')
-    default = milliseconds(multiply)
-    table.add_row("the same by torch's default", f'{default:.2f}', f'{update / default:.2f}')
-    if stable_baselines3:
-        baseline = time_baseline(trainer, env)
-        name = f'update of stable-baselines3 {stable_baselines3.__version__}'
-        table.add_row(name, f'{baseline:.2f}', f'1 / {baseline / update:.2f}')
-    table.add_row('step of the environment', f'{step:.2f}', f'{update / step:.2f}')
+    table = Table('one core, ms', 'time', *(f'{name} / this' for name in updates))
+    for name, time_ms in (updates | references).items():
+        ratios = (f'{update / time_ms:.2f}' for update in updates.values())
+        table.add_row(name, f'{time_ms:.2f}', *ratios)
     Console().print(table)
 
 
