@@ -7,7 +7,7 @@ NAME = 'hexapod_agent'
 setup(
     name=NAME,
     version='0.1.0',
-    description='DDPG agent that observes a chosen set of sensors, its Gymnasium environment and its training.',
+    description='DDPG agent on a chosen set of sensors, its environment and its training.',
     license='Apache-2.0',
     maintainer='Hexapod team',
     maintainer_email='team@hexapod.invalid',

@@ -7,7 +7,7 @@ NAME = 'hexapod_cpg'
 setup(
     name=NAME,
     version='0.1.0',
-    description='Central pattern generator: coupled Hopf oscillators and their mapping to joint angles.',
+    description='Central pattern generator of the hexapod.',
     license='Apache-2.0',
     maintainer='Hexapod team',
     maintainer_email='team@hexapod.invalid',

@@ -7,7 +7,7 @@ NAME = 'hexapod_doe'
 setup(
     name=NAME,
     version='0.1.0',
-    description='Designed experiments over sensor sets: plans, campaigns, bags, regression and report.',
+    description='Designed experiments over sensor sets, from plan to report.',
     license='Apache-2.0',
     maintainer='Hexapod team',
     maintainer_email='team@hexapod.invalid',

@@ -7,7 +7,7 @@ NAME = 'hexapod_sim'
 setup(
     name=NAME,
     version='0.1.0',
-    description='MuJoCo model of the hexapod, its sensors and the line-following task, as a node and as a library.',
+    description='MuJoCo model of the hexapod, its sensors and its task.',
     license='Apache-2.0',
     maintainer='Hexapod team',
     maintainer_email='team@hexapod.invalid',

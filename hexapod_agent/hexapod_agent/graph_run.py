@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import time
 from array import array
 from collections.abc import Mapping
 from dataclasses import asdict
@@ -17,7 +16,7 @@ from hexapod_cpg.mapping import command_from_action
 from hexapod_cpg.messages import command_to_message
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import CpgCommand, EpisodeResult, StepOutcome
-from hexapod_node.coroutines import sleep
+from hexapod_node.conditions import until_true
 from hexapod_node.lock_step import LockStep
 from hexapod_node.matching import unheard
 from hexapod_node.stamps import time_message
@@ -40,7 +39,6 @@ if TYPE_CHECKING:
     from hexapod_agent.agent_node import AgentNode
 
 _OUTCOME = 'step_outcome'
-_POLL_S = 0.02
 # What a sampled episode holds beside every sensor topic.
 _PROTOCOL_TOPICS = (_OUTCOME, 'odom', 'cpg/command', 'joint_trajectory', 'clock')
 _SENSOR_TOPICS = tuple(topic for channel in CHANNELS for topic in channel.topics)
@@ -173,11 +171,10 @@ class GraphRun:
     async def _until_heard(self, listeners: Mapping[str, int]) -> None:
         """Wait until the agent's own topics are matched."""
         node = self._node
-        deadline = time.monotonic() + node.timeout_s
-        while reason := unheard([node.command_publisher, node.result_publisher], listeners):
-            if time.monotonic() > deadline:
-                raise PeerError(f'{reason} after {node.timeout_s:g} s, expected a running node')
-            await sleep(node, _POLL_S)
+        publishers = [node.command_publisher, node.result_publisher]
+        if not await until_true(node, lambda: not unheard(publishers, listeners), node.timeout_s):
+            reason = unheard(publishers, listeners)
+            raise PeerError(f'{reason} after {node.timeout_s:g} s, expected a running node')
 
     def _recorded_topics(self) -> list[str]:
         return [self._node.resolve_topic_name(t) for t in (*_SENSOR_TOPICS, *_PROTOCOL_TOPICS)]

@@ -131,8 +131,8 @@ class ManagerNode(Node):
         elif time.monotonic() - self._alone_since > self._parameter('worker_timeout'):
             self._dashboard.log(
                 f'no worker offers the action {_ACTION} after '
-                f'{self._parameter("worker_timeout"):g} s: expected one from local_workers or from '
-                '`ros2 launch hexapod_bringup worker.launch.xml`'
+                f'{self._parameter("worker_timeout"):g} s: expected one from local_workers or '
+                'from `ros2 launch hexapod_bringup worker.launch.xml`'
             )
             self.exit_status = 1
 

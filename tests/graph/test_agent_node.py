@@ -131,8 +131,11 @@ class Faulty(SimNode):
         super().__init__()
         for sensor, _, publisher in self._sensors:
             if sensor.name == topic:
-                publish = publisher.publish
-                publisher.publish = lambda message: publish(spoil(message))
+                publisher.publish = compose(publisher.publish, spoil)
+
+
+def compose(publish, spoil):
+    return lambda message: publish(spoil(message))
 
 
 def nan(message: Imu) -> Imu:

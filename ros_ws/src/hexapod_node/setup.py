@@ -7,7 +7,7 @@ NAME = 'hexapod_node'
 setup(
     name=NAME,
     version='0.1.0',
-    description='What every rclpy node of the hexapod shares: parameters from a table, QoS, stamps, lock-step, spinning.',
+    description='What every rclpy node of the hexapod shares.',
     license='Apache-2.0',
     maintainer='Hexapod team',
     maintainer_email='team@hexapod.invalid',

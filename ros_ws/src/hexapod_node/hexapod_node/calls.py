@@ -5,16 +5,14 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 from rclpy.client import Client
 from rclpy.node import Node
 from rclpy.task import Future
 
-from hexapod_node.coroutines import sleep, until
-
-_POLL_S = 0.02
+from hexapod_node.conditions import until_true
+from hexapod_node.coroutines import STEADY, until
 
 
 class ServiceUnavailableError(TimeoutError):
@@ -27,16 +25,13 @@ async def call(node: Node, client: Client, request: Any, timeout_s: float) -> An
     Raises:
         ServiceUnavailableError: no server appeared, or none answered, within the time.
     """
-    deadline = time.monotonic() + timeout_s
-    while not client.service_is_ready():
-        if time.monotonic() > deadline:
-            raise ServiceUnavailableError(
-                f'service {client.service_name}: no server within {timeout_s:g} s, expected a '
-                f'running node that offers it'
-            )
-        await sleep(node, _POLL_S)
+    if not await until_true(node, client.service_is_ready, timeout_s):
+        raise ServiceUnavailableError(
+            f'service {client.service_name}: no server within {timeout_s:g} s, expected a '
+            f'running node that offers it'
+        )
     answer = client.call_async(request)
-    timer = node.create_timer(timeout_s, lambda: _give_up(client, answer, timeout_s))
+    timer = node.create_timer(timeout_s, lambda: _give_up(client, answer, timeout_s), clock=STEADY)
     try:
         return await until(answer)
     finally:

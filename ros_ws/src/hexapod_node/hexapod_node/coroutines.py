@@ -16,8 +16,11 @@ from typing import Any
 
 from rclpy.action import ActionServer
 from rclpy.action.server import ServerGoalHandle
+from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.task import Future
+
+STEADY = Clock(clock_type=ClockType.STEADY_TIME)
 
 
 @types.coroutine
@@ -47,9 +50,9 @@ def start(coroutine: Coroutine[Future, None, Any]) -> Future:
 
 
 async def sleep(node: Node, seconds: float) -> None:
-    """Wait on the wall clock without blocking the executor."""
+    """Wait without blocking the executor, on a clock that goes on when simulated time stands."""
     done = Future()
-    timer = node.create_timer(seconds, lambda: done.done() or done.set_result(None))
+    timer = node.create_timer(seconds, lambda: done.done() or done.set_result(None), clock=STEADY)
     try:
         await until(done)
     finally:

@@ -13,7 +13,7 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.task import Future
 
-from hexapod_node.coroutines import until
+from hexapod_node.coroutines import STEADY, until
 from hexapod_node.qos import LOCK_STEP
 from hexapod_node.stamp_gate import LockStepCounts, StampGate
 from hexapod_node.stamps import to_nanoseconds
@@ -43,7 +43,7 @@ class LockStep:
             node.create_subscription(kind, topic, partial(self._on_message, topic), LOCK_STEP)
             for topic, kind in topics.items()
         ]
-        self._watch = node.create_timer(_WATCH_PERIOD_S, self._on_watch)
+        self._watch = node.create_timer(_WATCH_PERIOD_S, self._on_watch, clock=STEADY)
 
     @property
     def counts(self) -> LockStepCounts:

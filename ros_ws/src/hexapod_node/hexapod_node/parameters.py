@@ -96,8 +96,8 @@ class ConfigParameters(Generic[Config]):
         return self._config(**self._values())
 
     def _values(self) -> dict[str, Any]:
-        parameters = self._node.get_parameters_by_prefix(self._prefix)
-        return {name: parameter.value for name, parameter in parameters.items()}
+        names = self._node.get_parameters_by_prefix(self._prefix)
+        return {name: self._node.get_parameter(f'{self._prefix}.{name}').value for name in names}
 
     def _check(self, parameters: list[RclpyParameter]) -> SetParametersResult:
         start = f'{self._prefix}.'

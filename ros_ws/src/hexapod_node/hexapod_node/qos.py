@@ -10,12 +10,14 @@ from rclpy.qos import (
     ReliabilityPolicy,
 )
 
-# Lock-step loses nothing. A reliable publisher also serves a best-effort subscriber.
+# Lock-step loses nothing. A reliable publisher also serves a best-effort subscriber. The depth is
+# for the recorder, which nobody waits for: at 10, a publisher under load has overwritten samples
+# that the recorder had yet to acknowledge.
 LOCK_STEP = QoSProfile(
     reliability=ReliabilityPolicy.RELIABLE,
     durability=DurabilityPolicy.VOLATILE,
     history=HistoryPolicy.KEEP_LAST,
-    depth=10,
+    depth=1000,
 )
 
 # A late joiner gets the last value; both ends must ask for it.

@@ -1,0 +1,163 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Writes the interface tables of the README from the running nodes and the sensor table.
+
+`python -m hexapod_bringup.interface_tables README.md` replaces what stands between the markers; a
+test holds the README to it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import rclpy
+from hexapod_agent.agent_node import AgentNode
+from hexapod_agent.observation import CHANNELS
+from hexapod_cpg.cpg_node import CpgNode
+from hexapod_doe.bag_file import BagFile
+from hexapod_doe.design import fraction
+from hexapod_doe.manager_node import PARAMETERS as MANAGER_PARAMETERS
+from hexapod_doe.manager_node import ManagerNode
+from hexapod_doe.plan_file import write_plan
+from hexapod_doe.plan_table import make_plan
+from hexapod_doe.player_node import PlayerNode
+from hexapod_doe.recorder_node import RecorderNode
+from hexapod_sim.sim_node import SimNode
+from rclpy.action import get_action_server_names_and_types_by_node
+from rclpy.node import Node
+
+SAMPLE_BAG = 'bags/sample'
+_NODES = {
+    'sim': (SimNode, 'hexapod_sim sim_node'),
+    'cpg': (CpgNode, 'hexapod_cpg cpg_node'),
+    'agent': (AgentNode, 'hexapod_agent agent_node'),
+    'recorder': (RecorderNode, 'hexapod_doe recorder_node'),
+    'player': (PlayerNode, 'hexapod_doe player_node'),
+    'manager': (ManagerNode, 'hexapod_doe manager_node'),
+}
+# Parameters that the nodes were given here, and their defaults.
+_GIVEN = {p.name: str(p.default) for p in MANAGER_PARAMETERS} | {'bag': ''}
+# What every rclpy node has is not worth a row.
+_COMMON_TOPICS = ('/rosout', '/parameter_events', '/diagnostics')
+_COMMON_SERVICES = re.compile(r'/((describe|get|list|set)_parameter\w*|get_type_description)$')
+
+
+def sensor_table() -> str:
+    """Return the sensor table as Markdown."""
+    rows = [
+        (
+            channel.letter or 'always',
+            channel.name,
+            str(channel.size),
+            ', '.join(f'`{topic}`' for topic in channel.topics) or 'none',
+            f'`{channel.message_type}`' if channel.message_type else 'none',
+            channel.unit,
+            channel.scale,
+            channel.device,
+        )
+        for channel in CHANNELS
+    ]
+    head = ('letter', 'channel', 'numbers', 'topic', 'type', 'unit', 'scale', 'device')
+    return _markdown(head, rows)
+
+
+def node_tables(bag: Path) -> str:
+    """Return the tables of all nodes as Markdown. Uses rclpy's default context.
+
+    Args:
+        bag: Any bag, which the player node needs to start.
+    """
+    with TemporaryDirectory() as directory:
+        plan = Path(directory) / 'plan.csv'
+        write_plan(make_plan(fraction('eighth')), plan)
+        given = [f'plan:={plan}', 'local_workers:=0', f'bag:={bag}']
+        rclpy.init(args=['--ros-args', *(word for value in given for word in ('-p', value))])
+        sections = []
+        for name, (make, executable) in _NODES.items():
+            node = make()
+            played = set(BagFile(bag).types) if name == 'player' else set()
+            table = _node_table(node, played)
+            sections.append(f'#### `{name}`: `ros2 run {executable}`\n\n{table}')
+            node.destroy_node()
+        rclpy.shutdown()
+    return '\n\n'.join(sections)
+
+
+def replace(text: str, marker: str, table: str) -> str:
+    """Return the text with what stands between the markers replaced.
+
+    Raises:
+        ValueError: the markers are missing.
+    """
+    begin, end = f'<!-- {marker}: begin -->', f'<!-- {marker}: end -->'
+    if begin not in text or end not in text:
+        raise ValueError(f'no {begin} … {end} in the text')
+    head, rest = text.split(begin, 1)
+    return f'{head}{begin}\n{table}\n{end}{rest.split(end, 1)[1]}'
+
+
+def _node_table(node: Node, played: set[str]) -> str:
+    rows = [row for row in _interface(node) if f'/{row[1].strip("`")}' not in played]
+    if played:
+        rows.append(('publishes', 'every topic of the bag', 'as recorded'))
+    interface = _markdown(('', 'name', 'type'), rows)
+    parameters = list(_parameters(node))
+    if not parameters:
+        return interface
+    head = ('parameter', 'default', 'unit', 'meaning')
+    return f'{interface}\n\n{_markdown(head, parameters)}'
+
+
+def _interface(node: Node) -> Iterator[tuple[str, ...]]:
+    ends: list[tuple[str, str, Any, str]]
+    ends = [('publishes', p.topic_name, p.msg_type, 'msg') for p in node.publishers]
+    ends += [('subscribes', s.topic_name, s.msg_type, 'msg') for s in node.subscriptions]
+    ends += [('serves', s.service_name, s.srv_type, 'srv') for s in node.services]
+    ends += [('calls', c.service_name, c.srv_type, 'srv') for c in node.clients]
+    for what, name, kind, interface in ends:
+        if name not in _COMMON_TOPICS and not _COMMON_SERVICES.search(name):
+            package = kind.__module__.split('.')[0]
+            yield what, _code(name), f'`{package}/{interface}/{kind.__name__}`'
+    own = (node.get_name(), node.get_namespace())
+    for name, kinds in get_action_server_names_and_types_by_node(node, *own):
+        yield 'action', _code(name), f'`{kinds[0]}`'
+
+
+def _parameters(node: Node) -> Iterator[tuple[str, ...]]:
+    for name in sorted(node.get_parameters_by_prefix('')):
+        if name in ('use_sim_time', 'start_type_description_service'):
+            continue
+        described = node.describe_parameter(name)
+        unit = described.additional_constraints.removeprefix('unit: ')
+        default = _GIVEN.get(name, str(node.get_parameter(name).value))
+        yield f'`{name}`', f'`{default}`' if default else '', unit, described.description
+
+
+def _code(name: str) -> str:
+    """Return a name as users write it: relative, so that a namespace can go before it."""
+    return f'`{name.removeprefix("/")}`'
+
+
+def _markdown(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    lines = [head, ['---'] * len(head), *rows]
+    return '\n'.join(f'| {" | ".join(line)} |' for line in lines)
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Write both kinds of tables into a file."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('readme', type=Path)
+    path = parser.parse_args(arguments).readme
+    text = replace(path.read_text(encoding='utf-8'), 'sensors', sensor_table())
+    nodes = node_tables(path.resolve().parent / SAMPLE_BAG)
+    path.write_text(replace(text, 'interfaces', nodes), encoding='utf-8')
+
+
+if __name__ == '__main__':
+    main()
