@@ -80,7 +80,7 @@ def _use(parser: argparse.ArgumentParser, *path: str) -> None:
 
 def build_parser(argv: Sequence[str]) -> argparse.ArgumentParser:
     """Return the parser of the whole command line, complete only for the verb in `argv`."""
-    words = [word for word in argv if not word.startswith('-')][:2] + ['', '']
+    words = [*[word for word in argv if not word.startswith('-')][:2], '', '']
     parser = argparse.ArgumentParser(
         prog='ros2', description='ros2 is an extensible command-line tool for ROS 2.'
     )
@@ -97,7 +97,8 @@ def build_parser(argv: Sequence[str]) -> argparse.ArgumentParser:
         command_parser = commands.add_parser(command, help=text, description=text)
         command_parser.set_defaults(help_of=command_parser)
         verb_parsers = command_parser.add_subparsers(
-            title='Commands', metavar=f'Call `ros2 {command} <command> -h` for more detailed usage.'
+            title='Commands',
+            metavar=f'Call `ros2 {command} <command> -h` for more detailed usage.',
         )
         for verb, verb_text in verbs.items():
             verb_parser = verb_parsers.add_parser(verb, help=verb_text, description=verb_text)

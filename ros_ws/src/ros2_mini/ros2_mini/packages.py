@@ -73,7 +73,9 @@ def find_in_share(package: str, name: str) -> Path:
     """
     share = package_share(package)
     matches = sorted(
-        Path(folder, name) for folder, _, names in os.walk(share, followlinks=True) if name in names
+        Path(folder, name)
+        for folder, _, names in os.walk(share, followlinks=True)
+        if name in names
     )
     if not matches:
         raise CommandError(

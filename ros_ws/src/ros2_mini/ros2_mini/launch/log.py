@@ -27,7 +27,7 @@ def make_log_directory() -> Path:
 class LaunchLog:
     """Writes the lines of a launch and of its processes; a context manager."""
 
-    def __init__(self, directory: Path):
+    def __init__(self, directory: Path) -> None:
         self._file = (directory / 'launch.log').open('w', buffering=1, encoding='utf-8')
 
     def __enter__(self) -> 'LaunchLog':

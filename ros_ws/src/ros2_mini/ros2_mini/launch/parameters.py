@@ -89,7 +89,7 @@ def parameter_value(text: str, type_name: str = 'yaml') -> ParameterValue:
     try:
         value = yaml.safe_load(text) if text else text
     except yaml.YAMLError as error:
-        raise ValueError(f"value '{text}' is no YAML; give a text with type=\"str\"") from error
+        raise ValueError(f'value \'{text}\' is no YAML; give a text with type="str"') from error
     if kind is None:
         return _checked(value, text)
     if type_name.startswith('list_of_'):

@@ -24,7 +24,7 @@ class ManagedProcess:
     on exactly one SIGINT.
     """
 
-    def __init__(self, spec: ProcessSpec, process: Process, log: LaunchLog):
+    def __init__(self, spec: ProcessSpec, process: Process, log: LaunchLog) -> None:
         self.spec = spec
         self._process = process
         self._log = log

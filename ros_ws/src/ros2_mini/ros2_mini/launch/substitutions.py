@@ -42,7 +42,7 @@ def parse(text: str) -> Template:
 class _Reader:
     """A recursive descent over one text."""
 
-    def __init__(self, text: str):
+    def __init__(self, text: str) -> None:
         self._text = text
         self._at = 0
 

@@ -15,7 +15,7 @@ from ros2_mini.launch.process import ManagedProcess
 class Supervisor:
     """Starts the processes of a plan and ends them together."""
 
-    def __init__(self, plan: Plan, log: LaunchLog):
+    def __init__(self, plan: Plan, log: LaunchLog) -> None:
         self._plan = plan
         self._log = log
         self._stopping = asyncio.Event()
@@ -39,7 +39,9 @@ class Supervisor:
         return int(self._failed)
 
     def _interrupted(self, number: signal.Signals) -> None:
-        text = f'user interrupted with {"ctrl-c (SIGINT)" if number == signal.SIGINT else "SIGTERM"}'
+        text = (
+            f'user interrupted with {"ctrl-c (SIGINT)" if number == signal.SIGINT else "SIGTERM"}'
+        )
         again = ' again, ignoring...' if self._stopping.is_set() else ''
         self._log.say('WARNING', 'launch', text + again)
         self._stopping.set()

@@ -1,0 +1,84 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The node that a verb works through, from its start to its end."""
+
+import contextlib
+import os
+import signal
+from collections.abc import Iterator, Sequence
+from importlib.resources import as_file, files
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.signals import SignalHandlerOptions
+
+from ros2_mini.discovery import DEFAULT_LIMIT, wait_until_settled
+
+NODE_NAME_PREFIX = '_ros2cli'
+_PROFILES = 'FASTRTPS_DEFAULT_PROFILES_FILE'
+
+
+@contextlib.contextmanager
+def open_node(
+    name: str | None = None,
+    *,
+    use_sim_time: bool = False,
+    cli_args: Sequence[str] = (),
+    signals: SignalHandlerOptions = SignalHandlerOptions.ALL,
+) -> Iterator[Node]:
+    """Yield a hidden node, and take it down again.
+
+    Args:
+        name: Name of the node; a hidden one with the process id when None.
+        use_sim_time: Whether the node's clock follows `/clock`.
+        cli_args: ROS arguments of the node, such as remappings.
+        signals: Which signals shut the node down.
+
+    Raises:
+        SystemExit: With the number of SIGTERM, if that has ended the node.
+    """
+    rclpy.init(args=[], signal_handler_options=signals)
+    node = rclpy.create_node(
+        name or f'{NODE_NAME_PREFIX}_{os.getpid()}',
+        cli_args=list(cli_args),
+        start_parameter_services=False,
+        parameter_overrides=[Parameter('use_sim_time', value=use_sim_time)],
+    )
+    try:
+        yield node
+    except ExternalShutdownException as error:
+        raise SystemExit(int(signal.SIGTERM)) from error
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+@contextlib.contextmanager
+def graph_node(limit: float = DEFAULT_LIMIT) -> Iterator[Node]:
+    """Yield a node that only looks, once it knows the graph.
+
+    Args:
+        limit: Longest time to wait for that [s].
+    """
+    with contextlib.ExitStack() as stack:
+        with _quick_discovery():
+            node = stack.enter_context(open_node())
+        wait_until_settled(node, limit)
+        yield node
+
+
+@contextlib.contextmanager
+def _quick_discovery() -> Iterator[None]:
+    """Let a participant made meanwhile use our settings, unless the user has chosen others."""
+    if _PROFILES in os.environ:
+        yield
+        return
+    with as_file(files('ros2_mini') / 'quick_discovery.xml') as profiles:
+        os.environ[_PROFILES] = str(profiles)
+        try:
+            yield
+        finally:
+            del os.environ[_PROFILES]

@@ -1,0 +1,59 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""`ros2 action info`: the clients and servers of an action."""
+
+import argparse
+from collections.abc import Callable
+
+from rclpy.action import (
+    get_action_client_names_and_types_by_node,
+    get_action_server_names_and_types_by_node,
+)
+from rclpy.node import Node
+
+from ros2_mini import discovery
+from ros2_mini.names import full_name
+from ros2_mini.node_context import graph_node
+from ros2_mini.topics import expanded
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of `ros2 action info`."""
+    discovery.add_arguments(parser)
+    parser.add_argument('action_name', help="Name of the ROS action (e.g. '/fibonacci')")
+    parser.add_argument(
+        '-t', '--show-types', action='store_true', help='Additionally show the action type'
+    )
+    parser.add_argument(
+        '-c', '--count', action='store_true',
+        help='Only display the number of action clients and action servers',
+    )  # fmt: skip
+
+
+def main(args: argparse.Namespace) -> int:
+    """Print the nodes that use or serve the action."""
+    with graph_node(args.spin_time) as node:
+        action = expanded(node, args.action_name)
+        roles = {
+            'clients': _nodes(node, action, get_action_client_names_and_types_by_node),
+            'servers': _nodes(node, action, get_action_server_names_and_types_by_node),
+        }
+    print(f'Action: {args.action_name}')
+    for role, nodes in roles.items():
+        print(f'Action {role}: {len(nodes)}')
+        for name, types in [] if args.count else nodes:
+            print(f'    {name} [{", ".join(types)}]' if args.show_types else f'    {name}')
+    return 0
+
+
+def _nodes(
+    node: Node, action: str, look: Callable[[Node, str, str], list[tuple[str, list[str]]]]
+) -> list[tuple[str, list[str]]]:
+    """Return the nodes that `look` finds to have the action, with the types they give it."""
+    return [
+        (full_name(name, namespace), types)
+        for name, namespace in node.get_node_names_and_namespaces()
+        for found, types in look(node, name, namespace)
+        if found == action
+    ]

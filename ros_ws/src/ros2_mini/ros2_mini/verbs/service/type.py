@@ -1,0 +1,24 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""`ros2 service type`: the type of a service."""
+
+import argparse
+
+from ros2_mini import discovery
+from ros2_mini.node_context import graph_node
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of `ros2 service type`."""
+    discovery.add_arguments(parser)
+    parser.add_argument('service_name', help="Name of the ROS service (e.g. '/set_flag')")
+
+
+def main(args: argparse.Namespace) -> int:
+    """Print the types of the service; print nothing and fail if there is no such service."""
+    with graph_node(args.spin_time) as node:
+        types = dict(node.get_service_names_and_types()).get(args.service_name, [])
+    for name in types:
+        print(name)
+    return 0 if types else 1
