@@ -13,6 +13,7 @@ from hexapod_doe.bag_table import RESPONSE_NAME, bag_responses, plan_rule, read_
 from hexapod_doe.csv_table import read_csv, read_responses
 from hexapod_doe.errors import AnalysisError, BagError
 from hexapod_doe.options import Options
+from hexapod_doe.report import write_report
 from hexapod_doe.results import Analysis, write_json
 from hexapod_doe.table import RunTable
 
@@ -32,7 +33,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
     args.out.mkdir(parents=True, exist_ok=True)
     write_json(analysis, args.out / 'analysis.json')
+    page = write_report(analysis, args.out)
     print(summary(analysis))
+    print(f'report: {page}')
     return 0
 
 

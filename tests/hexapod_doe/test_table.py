@@ -32,6 +32,12 @@ def campaign(replicates: int = 4, name: str = 'eighth', seed: int = 5) -> pd.Dat
     return rows.assign(y=300 + 80 * rows['C'] + 30 * rows['A'] + noise)
 
 
+@pytest.fixture(autouse=True)
+def _without_report(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave out the report, which its own tests draw."""
+    monkeypatch.setattr(analyze, 'write_report', lambda analysis, out: out / 'index.html')
+
+
 @pytest.fixture
 def run(tmp_path: Path) -> Run:
     """Run the command line on rows and return analysis.json."""
