@@ -36,7 +36,7 @@ def aligned(values: Sequence[float | None], digits: int = 3, sign: bool = False)
     return [
         MISSING
         if value is None or not math.isfinite(value)
-        else ('+' if sign and value > 0 else '') + number_fixed(value, decimals)
+        else ('+' if sign and round(value, decimals) > 0 else '') + number_fixed(value, decimals)
         for value in values
     ]
 

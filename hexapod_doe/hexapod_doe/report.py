@@ -74,7 +74,7 @@ def render(analysis: Analysis, chapters: Iterable[Section]) -> str:
         analysis=analysis,
         sections=list(chapters),
         text=text,
-        chosen=text.chosen_prediction(analysis),
+        chosen=text.chosen_standing(analysis),
         light=theme_css(0),
         dark=theme_css(1),
         short=_SHORT_TABLE,

@@ -18,6 +18,7 @@ from hexapod_doe.formats import (
 )
 from hexapod_doe.report_tables import Table
 from hexapod_doe.results import Analysis
+from hexapod_doe.standing import standings
 from hexapod_doe.terms import CONSTANT
 
 SHOWN = 12
@@ -26,25 +27,27 @@ SHOWN = 12
 
 def choices(analysis: Analysis) -> Table | None:
     """Tabulate what each way to look at the same runs would choose."""
-    rows = [('final model', analysis.choice_rule, analysis.ranked()[0].label)]
+    rows = [('final model', 'all runs alike', analysis.ranking[0])]
     if analysis.two_part is not None:
-        rows.append(('two parts', 'chance of failure × reward', analysis.two_part.choice))
+        rows.append(
+            ('two parts', 'reward, weighed by the chance to fail', analysis.two_part.choice)
+        )
     rows += [(e.name, e.description, e.choice) for e in analysis.estimands]
     if analysis.averaging is not None:
         text = f'average over {analysis.averaging.models} models'
         rows.append(('averaged', text, analysis.averaging.choice))
     rows += [
-        (f'{other.design.name} alone', 'its own final model', other.ranked()[0].label)
+        (f'{other.design.name} alone', other.choice_rule, other.choice)
         for other in analysis.compared
     ]
     if len(rows) == 1:
         return None
-    ranks = {p.label: p.rank for p in analysis.predictions}
+    ranks = {standing.label: standing.rank for standing in standings(analysis)}
     agree = sum(choice == analysis.choice for *_, choice in rows)
     return Table(
         'choices',
         f'{agree} of {len(rows)} ways to look at the runs choose {analysis.choice}',
-        'The last column is the rank of that choice in the final model.',
+        'The last column is the rank of that choice by the model that decides.',
         {
             'view': [view for view, *_ in rows],
             'what it weighs': [text for _, text, _ in rows],
@@ -222,7 +225,9 @@ def front(analysis: Analysis) -> Table | None:
         f'{number(analysis.purchase.delta)} below the best.',
         {
             'set': [member.label for member in members],
-            f'cost / {analysis.purchase.currency}': [plain(member.cost) for member in members],
+            f'cost,\N{NO-BREAK SPACE}{analysis.purchase.currency}': [
+                plain(member.cost) for member in members
+            ],
             'predicted': aligned([member.fit for member in members], 4),
             'interval': [interval(member.ci) for member in members],
             'P(front)': [chance(member.p_front) for member in members],

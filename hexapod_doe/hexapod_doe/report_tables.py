@@ -10,7 +10,8 @@ from pathlib import Path
 import pandas as pd
 
 from hexapod_doe.formats import MISSING, aligned, chance, interval, number, probability, signed
-from hexapod_doe.results import Analysis, Prediction, Step
+from hexapod_doe.results import Analysis, Step
+from hexapod_doe.standing import Standing, standings
 from hexapod_doe.terms import CONSTANT
 
 
@@ -37,21 +38,21 @@ class Table:
 
 def predictions(analysis: Analysis) -> Table:
     """Tabulate all sets, best first."""
-    ranked, ranks = analysis.ranked(), analysis.rank_uncertainty
+    ranked, ranks = standings(analysis), analysis.rank_uncertainty
     cells = {
-        'rank': [f'{p.rank}' for p in ranked],
-        'set': [p.label for p in ranked],
-        'predicted': aligned([p.fit for p in ranked], 4),
-        'interval of the mean': [interval(p.ci) for p in ranked],
-        'of one run': [interval(p.pi) for p in ranked],
-        'trained': ['yes' if p.tested else '' for p in ranked],
-        'safe': ['yes' if p.alias_safe else '' for p in ranked],
+        'rank': [f'{s.rank}' for s in ranked],
+        'set': [s.label for s in ranked],
+        'predicted': aligned([s.value for s in ranked], 4),
+        'interval of the mean': [interval(s.ci) for s in ranked],
+        'of one run': [interval(s.pi) for s in ranked],
+        'trained': ['yes' if s.tested else '' for s in ranked],
+        'safe': ['yes' if s.alias_safe else '' for s in ranked],
     }
     if ranks is not None:
         cells |= {
-            'P(best)': [chance(ranks.p_best.get(p.label)) for p in ranked],
-            'P(top 3)': [chance(ranks.p_top3.get(p.label)) for p in ranked],
-            'ranks': [_ranks(ranks.rank_interval.get(p.label)) for p in ranked],
+            'P(best)': [chance(ranks.p_best.get(s.label)) for s in ranked],
+            'P(top 3)': [chance(ranks.p_top3.get(s.label)) for s in ranked],
+            'ranks': [_ranks(ranks.rank_interval.get(s.label)) for s in ranked],
         }
     return Table(
         'predictions',
@@ -59,7 +60,7 @@ def predictions(analysis: Analysis) -> Table:
         f'Intervals and ranks hold with {100 * analysis.level:g} %. Safe: the prediction is the '
         'same whichever name a confounded sum is given.',
         cells,
-        pd.DataFrame([_prediction_record(analysis, p) for p in ranked]),
+        pd.DataFrame([_prediction_record(analysis, s) for s in ranked]),
     )
 
 
@@ -104,7 +105,7 @@ def model_terms(analysis: Analysis) -> Table:
         f'coefficient. A sum is all that the cases can see of its terms{scale}.',
         {
             'term': ['constant' if name == CONSTANT else name for name in names],
-            'effect': aligned(columns['effects'], sign=True),
+            'effect': aligned(columns['effects'], 4, sign=True),
             'coefficient': aligned(columns['coef'], 5, sign=True),
             'standard error': [number(value) for value in columns['se']],
             't': aligned(columns['t'], 4, sign=True),
@@ -166,8 +167,8 @@ def main_effects(analysis: Analysis) -> Table:
             'sensor': [f'{e.factor} {names.get(e.factor, "")}'.strip() for e in found],
             'without': aligned([e.mean_without for e in found], 4),
             'with': aligned([e.mean_with for e in found], 4),
-            'effect': aligned([e.effect for e in found], sign=True),
-            'standard error': aligned([e.se_effect for e in found]),
+            'effect': aligned([e.effect for e in found], 4, sign=True),
+            'standard error': aligned([e.se_effect for e in found], 3),
         },
         pd.DataFrame([vars(effect) for effect in found]),
     )
@@ -199,22 +200,27 @@ def _ranks(bounds: tuple[int, int] | None) -> str:
     return f'{low}' if low == high else f'{low} to {high}'
 
 
-def _prediction_record(analysis: Analysis, p: Prediction) -> dict[str, object]:
-    ranks = analysis.rank_uncertainty
+def _prediction_record(analysis: Analysis, standing: Standing) -> dict[str, object]:
+    ranks, label = analysis.rank_uncertainty, standing.label
+    final = next(p for p in analysis.predictions if p.label == label)
     extra = {} if ranks is None else {
-        'p_best': ranks.p_best.get(p.label), 'p_top3': ranks.p_top3.get(p.label)
+        'p_best': ranks.p_best.get(label), 'p_top3': ranks.p_top3.get(label)
     }  # fmt: skip
     return {
-        'rank': p.rank,
-        'label': p.label,
-        **p.levels,
-        'fit': p.fit,
-        'ci_low': p.ci[0],
-        'ci_high': p.ci[1],
-        'pi_low': p.pi[0],
-        'pi_high': p.pi[1],
-        'tested': p.tested,
-        'alias_safe': p.alias_safe,
+        'rank': standing.rank,
+        'label': label,
+        **standing.levels,
+        'value': standing.value,
+        'ci_low': standing.ci[0],
+        'ci_high': standing.ci[1],
+        'pi_low': standing.pi[0],
+        'pi_high': standing.pi[1],
+        'tested': standing.tested,
+        'alias_safe': standing.alias_safe,
+        'final_model_rank': final.rank,
+        'final_model_fit': final.fit,
+        'final_model_ci_low': final.ci[0],
+        'final_model_ci_high': final.ci[1],
         **extra,
     }
 

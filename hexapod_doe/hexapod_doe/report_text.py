@@ -20,7 +20,8 @@ from hexapod_doe.formats import (
     signed,
 )
 from hexapod_doe.planner import FULL_TRAINING
-from hexapod_doe.results import Analysis, Prediction
+from hexapod_doe.results import Analysis
+from hexapod_doe.standing import Standing, deciding_parts, standings
 
 TOUR_EPISODES = 100
 """With fewer episodes than this an agent has hardly begun to learn."""
@@ -74,7 +75,7 @@ def caution(analysis: Analysis) -> str:
 
 def headline(analysis: Analysis) -> str:
     """Return the answer in one sentence."""
-    chosen = chosen_prediction(analysis)
+    chosen = chosen_standing(analysis)
     if not distinguishes(analysis):
         return f'No set of sensors stands out yet; {name_of(chosen)} comes first'
     return f'Choose {name_of(chosen)}'
@@ -86,36 +87,37 @@ def distinguishes(analysis: Analysis) -> bool:
     return predicted is not None and predicted > 0
 
 
-def chosen_prediction(analysis: Analysis) -> Prediction:
-    """Return the final model's prediction of the chosen set."""
-    return next(p for p in analysis.predictions if p.label == analysis.choice)
+def chosen_standing(analysis: Analysis) -> Standing:
+    """Return where the chosen set stands."""
+    return next(s for s in standings(analysis) if s.label == analysis.choice)
 
 
-def name_of(prediction: Prediction) -> str:
+def name_of(standing: Standing) -> str:
     """Return a set's letters, or words for the set without any."""
-    on = ''.join(factor for factor, level in prediction.levels.items() if level > 0)
-    return on or 'no optional sensor'
+    return standing.label if standing.size else 'no optional sensor'
 
 
-def sensors_of(analysis: Analysis, prediction: Prediction) -> str:
+def sensors_of(analysis: Analysis, standing: Standing) -> str:
     """Return the names of a set's sensors for a sentence."""
     names = analysis.design.factor_names
-    on = [names.get(f, f) for f, level in prediction.levels.items() if level > 0]
+    on = [names.get(f, f) for f, level in standing.levels.items() if level > 0]
     return listing(on, limit=len(on)) or 'only what is always observed'
 
 
 def facts(analysis: Analysis) -> list[Fact]:
     """Return the numbers that stand at the head of the report."""
-    best = chosen_prediction(analysis)
-    every = max(analysis.predictions, key=lambda p: sum(p.levels.values()))
+    best = chosen_standing(analysis)
+    every = max(standings(analysis), key=lambda standing: standing.size)
     level = f'{100 * analysis.level:g} %'
     found = [
         Fact(
             f'predicted {analysis.response.replace("_", " ")}',
-            number(best.fit),
+            number(best.value),
             f'{level} interval {interval(best.ci)}',
         ),
-        Fact('against all sensors', signed(best.fit - every.fit), f'all: {number(every.fit)}'),
+        Fact(
+            'against all sensors', signed(best.value - every.value), f'all: {number(every.value)}'
+        ),
         _certainty(analysis, best),
     ]
     if analysis.purchase is not None:
@@ -127,7 +129,7 @@ def facts(analysis: Analysis) -> list[Fact]:
 
 def sureness(analysis: Analysis) -> list[str]:
     """Return sentences on how far the answer can be trusted."""
-    best = chosen_prediction(analysis)
+    best = chosen_standing(analysis)
     sentences = [_data(analysis), _model(analysis)]
     if not best.tested:
         sentences.append(
@@ -143,20 +145,19 @@ def sureness(analysis: Analysis) -> list[str]:
     return sentences
 
 
-def _certainty(analysis: Analysis, best: Prediction) -> Fact:
+def _certainty(analysis: Analysis, best: Standing) -> Fact:
     if analysis.rank_uncertainty is not None:
         first = analysis.rank_uncertainty.p_best.get(best.label)
         top = analysis.rank_uncertainty.p_top3.get(best.label)
         return Fact('chance to be the best set', chance(first), f'in the top 3: {chance(top)}')
     rivals = sum(
         best.ci[0] is not None and p.ci[1] is not None and p.ci[1] >= best.ci[0]
-        for p in analysis.predictions
-        if p is not best
+        for p in standings(analysis)
+        if p.label != best.label
     )
     text = f'{rivals}' if best.ci[0] is not None else MISSING
-    return Fact(
-        'sets not told from it', text, f'of {len(analysis.predictions)}, intervals overlap'
-    )
+    note = f'of {len(analysis.predictions)}, by their intervals'
+    return Fact('sets not told from it', text, note)
 
 
 def _data(analysis: Analysis) -> str:
@@ -222,5 +223,9 @@ def _rank(analysis: Analysis) -> str:
 def _failures(analysis: Analysis) -> str:
     parts = analysis.two_part
     assert parts is not None  # the caller has looked
+    if deciding_parts(analysis) is not None:
+        first = analysis.ranking[0]
+        same = 'also puts it first' if first == analysis.choice else f'puts {first} first'
+        return f'The final model, which takes failed runs for noise, {same}.'
     same = ' as well' if parts.choice == analysis.choice else ''
     return f'Weighed by the chance of a failed training, {parts.choice} comes first{same}.'

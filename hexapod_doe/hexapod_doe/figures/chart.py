@@ -69,10 +69,11 @@ class Chart:
 
 
 def _embed(svg: str) -> str:
-    """Strip what only a file needs, let the page set size and colours, name group ids apart."""
+    """Strip what only a file needs, and let the page set the size and the colours."""
     body = svg[svg.index('<svg') :]
     body = re.sub(r'<metadata>.*?</metadata>', '', body, flags=re.DOTALL)
     body = re.sub(r'(<svg[^>]*?) width="[^"]*"', r'\1', body, count=1)
     body = re.sub(r'(<svg[^>]*?) height="[^"]*"', r'\1', body, count=1)
-    body = re.sub(r'<g id="[A-Za-z]\w*">', '<g>', body)
+    body = re.sub(r'<g id="[\w.]*"/>', '', body)
+    body = re.sub(r'<g id="[\w.]*">', '<g>', body)
     return _COLOUR.sub(lambda match: _VARIABLES[match.group()], body)

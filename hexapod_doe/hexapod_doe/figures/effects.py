@@ -188,14 +188,15 @@ def _corners(table: pd.DataFrame, term: str) -> pd.DataFrame:
 
 def _draw_interaction(axes: Axes, corners: pd.DataFrame, term: str) -> None:
     first, second = term[0], term[1]
+    lines = {level: corners[corners['second'] == level].sort_values('first') for level in (-1, 1)}
+    ends = {level: float(line['mean'].iloc[-1]) for level, line in lines.items()}
     for level, colour, face in ((-1, MUTED, SURFACE), (1, SERIES[0], SERIES[0])):
-        line = corners[corners['second'] == level].sort_values('first')
+        line = lines[level]
         axes.plot(line['first'], line['mean'], 'o-', color=colour, markerfacecolor=face)
-        end = line.iloc[-1]
         axes.annotate(
             f'with {second}' if level > 0 else f'no {second}',
-            (end['first'], end['mean']),
-            (5, 0),
+            (float(line['first'].iloc[-1]), ends[level]),
+            (5, 4 if ends[level] > ends[-level] else -4),  # apart where the lines meet
             textcoords='offset points',
             va='center',
             color=colour,

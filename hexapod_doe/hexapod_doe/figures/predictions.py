@@ -14,7 +14,8 @@ from hexapod_doe.figures.chart import Chart
 from hexapod_doe.figures.parts import canvas, design_label, designs, is_wide, unit_label
 from hexapod_doe.figures.style import BLUE, GRID, INK, MARKERS, MUTED, SERIES, SURFACE
 from hexapod_doe.formats import count, number
-from hexapod_doe.results import Analysis, Prediction
+from hexapod_doe.results import Analysis
+from hexapod_doe.standing import Standing, deciding_parts, standings
 
 TOP = 15
 """Sets shown one by one."""
@@ -22,7 +23,7 @@ TOP = 15
 
 def top_sets(analysis: Analysis) -> Chart:
     """Draw the best sets as rows: which sensors they hold, and what they are predicted to earn."""
-    ranked = analysis.ranked()
+    ranked = standings(analysis)
     shown = _with_references(ranked)
     factors = analysis.design.factors
 
@@ -33,7 +34,7 @@ def top_sets(analysis: Analysis) -> Chart:
         matrix, axes = figure.subplots(1, 2, sharey=True, width_ratios=share)
         _draw_matrix(matrix, shown, factors)
         _draw_intervals(axes, shown)
-        matrix.set_yticks(range(len(shown)), [_row_name(p, len(ranked), wide) for p in shown])
+        matrix.set_yticks(range(len(shown)), [_row_name(p, wide) for p in shown])
         axes.set_xlabel(f'predicted {unit_label(analysis)}')
         return figure
 
@@ -47,7 +48,8 @@ def top_sets(analysis: Analysis) -> Chart:
         'top_sets',
         title,
         f'Thick bars: {level} interval of the mean; thin bars: {level} interval of one new '
-        'training. Filled points were trained in this campaign, hollow ones are predictions only.',
+        'training. Filled points were trained in this campaign, hollow ones are predictions only.'
+        + _basis(analysis),
         _frame(analysis, shown),
         draw,
     )
@@ -56,13 +58,13 @@ def top_sets(analysis: Analysis) -> Chart:
 def ranked_predictions(analysis: Analysis) -> Chart:
     """Draw the predictions of all sets, best first, with their intervals, for every design."""
     level = f'{100 * analysis.level:g} %'
-    frames = [_frame(other, other.ranked()) for other in designs(analysis)]
+    frames = [_frame(other, standings(other)) for other in designs(analysis)]
 
     def draw(width: float) -> Figure:
         figure, axes = canvas(width, 3.8 if is_wide(width) else 3.2)
         for index, other in enumerate(designs(analysis)):
-            _draw_ranked(axes, other.ranked(), index, design_label(other.design))
-        _name_points(axes, analysis.ranked(), 5 if is_wide(width) else 2)
+            _draw_ranked(axes, standings(other), index, design_label(other.design))
+        _name_points(axes, standings(analysis), 5 if is_wide(width) else 2)
         axes.set_xlabel('rank')
         axes.set_ylabel(f'predicted {unit_label(analysis)}')
         axes.set_xlim(0, len(analysis.predictions) + 1)
@@ -70,13 +72,14 @@ def ranked_predictions(analysis: Analysis) -> Chart:
             axes.legend(loc='lower left', handlelength=1)
         return figure
 
-    best, worst = analysis.ranked()[0], analysis.ranked()[-1]
-    fall = best.fit - worst.fit
+    best, worst = standings(analysis)[0], standings(analysis)[-1]
+    fall = best.value - worst.value
     return Chart(
         'ranked_predictions',
         f'From {best.label} to {worst.label} the prediction falls by {number(fall)}',
         f'All {len(analysis.predictions)} sets in the order of their prediction, each design in '
-        f'its own order, with the {level} interval of the mean. Filled points were trained.',
+        f'its own order, with the {level} interval of the mean. Filled points were trained.'
+        + _basis(analysis),
         pd.concat(frames, ignore_index=True),
         draw,
     )
@@ -86,11 +89,11 @@ def agreement(analysis: Analysis) -> Chart | None:
     """Draw the predictions of each compared design against those of the first one."""
     if not analysis.compared:
         return None
-    own = {p.label: p.fit for p in analysis.predictions}
+    own = {p.label: p.value for p in standings(analysis)}
     data = pd.DataFrame(
-        {'label': p.label, 'design': other.design.name, 'x': own[p.label], 'y': p.fit}
+        {'label': p.label, 'design': other.design.name, 'x': own[p.label], 'y': p.value}
         for other in analysis.compared
-        for p in other.predictions
+        for p in standings(other)
         if p.label in own
     )
     correlation = float(data['x'].corr(data['y'], method='spearman'))
@@ -114,17 +117,22 @@ def agreement(analysis: Analysis) -> Chart | None:
     )
 
 
-def _with_references(ranked: Sequence[Prediction]) -> list[Prediction]:
+def _basis(analysis: Analysis) -> str:
+    if deciding_parts(analysis) is None:
+        return ''
+    return (
+        ' Runs failed, so that the two-part model predicts: its reduced form places the points, '
+        'its full form the intervals.'
+    )
+
+
+def _with_references(ranked: Sequence[Standing]) -> list[Standing]:
     """Return the best sets, then the sets of all sensors and of none where they are not in."""
-    shown = list(ranked[:TOP])
-    for reference in (sum, lambda levels: -sum(levels)):
-        extreme = max(ranked, key=lambda p: reference(p.levels.values()))
-        if extreme not in shown:
-            shown.append(extreme)
-    return shown
+    references = (max(ranked, key=lambda s: s.size), min(ranked, key=lambda s: s.size))
+    return [*ranked[:TOP], *(s for s in references if s.rank > TOP)]
 
 
-def _draw_matrix(axes: Axes, shown: Sequence[Prediction], factors: Sequence[str]) -> None:
+def _draw_matrix(axes: Axes, shown: Sequence[Standing], factors: Sequence[str]) -> None:
     for row, prediction in enumerate(shown):
         for column, factor in enumerate(factors):
             on = prediction.levels[factor] > 0
@@ -138,13 +146,13 @@ def _draw_matrix(axes: Axes, shown: Sequence[Prediction], factors: Sequence[str]
     axes.spines[:].set_visible(False)
 
 
-def _draw_intervals(axes: Axes, shown: Sequence[Prediction]) -> None:
+def _draw_intervals(axes: Axes, shown: Sequence[Standing]) -> None:
     for row, p in enumerate(shown):
         for (low, high), width, alpha in ((p.pi, 1.0, 0.55), (p.ci, 3.2, 1.0)):
             if low is not None and high is not None:
                 axes.plot((low, high), (row, row), color=BLUE, linewidth=width, alpha=alpha,
                           solid_capstyle='butt')  # fmt: skip
-        axes.plot(p.fit, row, 'o', color=BLUE, markersize=6, markeredgewidth=1.4,
+        axes.plot(p.value, row, 'o', color=BLUE, markersize=6, markeredgewidth=1.4,
                   markerfacecolor=BLUE if p.tested else SURFACE, zorder=3)  # fmt: skip
     axes.grid(axis='x')
     axes.grid(visible=False, axis='y')
@@ -152,20 +160,18 @@ def _draw_intervals(axes: Axes, shown: Sequence[Prediction]) -> None:
     axes.spines['left'].set_visible(False)
 
 
-def _row_name(prediction: Prediction, total: int, wide: bool) -> str:
-    sizes = sum(level > 0 for level in prediction.levels.values())
-    rank = f'{prediction.rank}'
+def _row_name(standing: Standing, wide: bool) -> str:
     if not wide:
-        return rank
-    if sizes == len(prediction.levels):
-        return f'all sensors  {rank}'
-    return f'{prediction.label}  {rank}' if sizes else f'none of them  {rank}'
+        return f'{standing.rank}'
+    whole = standing.size == len(standing.levels)
+    name = 'all sensors' if whole else standing.label if standing.size else 'none of them'
+    return f'{name}  {standing.rank}'
 
 
-def _draw_ranked(axes: Axes, ranked: Sequence[Prediction], index: int, label: str) -> None:
+def _draw_ranked(axes: Axes, ranked: Sequence[Standing], index: int, label: str) -> None:
     colour, marker = SERIES[index % len(SERIES)], MARKERS[index % len(MARKERS)]
     ranks = np.array([p.rank for p in ranked])
-    fits = np.array([p.fit for p in ranked])
+    fits = np.array([p.value for p in ranked])
     bounds = np.array([[np.nan if b is None else b for b in p.ci] for p in ranked])
     tested = np.array([p.tested for p in ranked])
     axes.vlines(ranks, bounds[:, 0], bounds[:, 1], color=colour, linewidth=1, alpha=0.45)
@@ -175,24 +181,24 @@ def _draw_ranked(axes: Axes, ranked: Sequence[Prediction], index: int, label: st
     axes.plot([], [], marker, color=colour, markersize=4, label=label)
 
 
-def _name_points(axes: Axes, ranked: Sequence[Prediction], best: int) -> None:
-    top = ranked[0].ci[1] or ranked[0].fit
+def _name_points(axes: Axes, ranked: Sequence[Standing], best: int) -> None:
+    top = ranked[0].ci[1] or ranked[0].value
     names = '  '.join(p.label for p in ranked[:best])
     axes.annotate(f'best: {names}', (1, top), (0, 5), textcoords='offset points')
 
 
-def _overlap(best: Prediction, other: Prediction) -> bool:
+def _overlap(best: Standing, other: Standing) -> bool:
     low, high = best.ci[0], other.ci[1]
     return low is not None and high is not None and high >= low
 
 
-def _frame(analysis: Analysis, predictions: Sequence[Prediction]) -> pd.DataFrame:
+def _frame(analysis: Analysis, predictions: Sequence[Standing]) -> pd.DataFrame:
     return pd.DataFrame(
         {
             'design': analysis.design.name,
             'rank': p.rank,
             'label': p.label,
-            'fit': p.fit,
+            'fit': p.value,
             'ci_low': p.ci[0],
             'ci_high': p.ci[1],
             'pi_low': p.pi[0],

@@ -65,14 +65,26 @@ def _draw_member(axes: Axes, priced: PricedSet, colour: str) -> None:
 
 
 def _annotate(axes: Axes, named: Sequence[PricedSet], chosen: PricedSet) -> None:
-    """Name sets at their upper left, which a front leaves free, a free one at its right."""
-    for priced in named:
+    """Name sets at their upper left, which a front leaves free, a free one at its right.
+
+    The chosen one first, then from the best down; what would cover a name goes without.
+    """
+    width, height = (high - low for low, high in (axes.get_xlim(), axes.get_ylim()))
+    placed: list[PricedSet] = []
+    for priced in sorted(named, key=lambda priced: (priced is not chosen, -priced.fit)):
+        if any(
+            abs(priced.cost - other.cost) < 0.15 * width
+            and abs(priced.fit - other.fit) < 0.05 * height
+            for other in placed
+        ):
+            continue
         left = priced.cost > 0
         axes.annotate(
             priced.label, (priced.cost, priced.fit), (-5, 5) if left else (6, -12),
             textcoords='offset points', ha='right' if left else 'left',
             color=ORANGE if priced is chosen else INK,
         )  # fmt: skip
+        placed.append(priced)
 
 
 def _title(purchase: Purchase) -> str:
