@@ -37,7 +37,7 @@ class HexapodLine(gymnasium.Env[Observation, NDArray[np.float32]]):
 
     ## Observation space
     `Box(-1, 1, (n,), float32)`, n = 79 plus the chosen channels. A number is its reading over
-    its scale, clipped.
+    its scale, clipped; the height is taken from 0.13 m.
 
     | Letter | Observation | Count | Scale | Unit |
     |--------|-------------|-------|-------|------|
@@ -50,7 +50,7 @@ class HexapodLine(gymnasium.Env[Observation, NDArray[np.float32]]):
     | B | linear velocity of the body, body frame | 3 | 0.5 | m/s |
     | C | orientation quaternion x y z w | 4 | 1 | 1 |
     | D | angular velocity of the body, body frame | 3 | 2 | rad/s |
-    | E | height of the body above ground | 1 | 0.2 | m |
+    | E | height of the body above ground | 1 | 0.05 | m |
     | F | foot forces: six normal, six friction | 12 | 20 | N |
     | G | foot contacts, 0 or 1 | 6 | 1 | 1 |
 

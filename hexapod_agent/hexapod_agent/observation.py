@@ -33,7 +33,7 @@ class Channel:
         units: Unit of each reading.
         scales: Deviation from the center that is observed as 1, for each reading, in its unit.
         device: What yields it on a physical robot.
-        centers: Value that is observed as 0, for each reading, in its unit.
+        centers: Value that is observed as 0, for each reading, in its unit; empty for zeros.
     """
 
     letter: str
@@ -45,7 +45,7 @@ class Channel:
     units: tuple[str, ...]
     scales: tuple[float, ...]
     device: str
-    centers: tuple[float, ...] = (0.0, 0.0)
+    centers: tuple[float, ...] = ()
 
     @property
     def size(self) -> int:
@@ -98,7 +98,7 @@ CHANNELS = (
     ),
     Channel(
         'E', 'body height', ('body/height',), 'sensor_msgs/msg/Range',
-        ('height',), (1,), ('m',), (0.2,), 'range finder',
+        ('height',), (1,), ('m',), (0.05,), 'range finder', (0.13,),
     ),
     Channel(
         'F', 'foot forces', tuple(f'foot_force/{leg}' for leg in LEGS),
@@ -154,8 +154,9 @@ class ObservationSpec:
         self._scale = np.empty(self.size)
         start = 0
         for channel in self.channels:
-            columns = (channel.sizes, channel.scales, channel.centers)
-            for key, size, scale, center in zip(channel.readings, *columns, strict=False):
+            centers = channel.centers or (0.0,) * len(channel.readings)
+            columns = (channel.sizes, channel.scales, centers)
+            for key, size, scale, center in zip(channel.readings, *columns, strict=True):
                 part = slice(start, start + size)
                 self._slices[key] = (channel, part)
                 self._scale[part] = scale

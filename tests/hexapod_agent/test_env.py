@@ -12,10 +12,28 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 from hexapod_agent.env import HexapodLine
-from hexapod_agent.observation import ObservationError
+from hexapod_agent.observation import CHANNELS, ObservationError
+from hexapod_cpg.mapping import READINGS
 from hexapod_sim.task import episode_seed
 
 ID = 'hexapod_agent:HexapodLine-v0'
+
+
+def test_tables_of_the_docstring_are_those_of_the_code():
+    """Counts, scales and units of the observation, value and half width of the actions."""
+    rows = [line.strip().strip('|').split('|') for line in HexapodLine.__doc__.splitlines()]
+    cells = [[cell.strip() for cell in row] for row in rows if len(row) == 5]
+    told = [(row[0].replace('always', ''), *row[2:]) for row in cells if row[2].isdigit()]
+    table = [
+        (channel.letter, str(size), f'{scale:g}', unit)
+        for channel in CHANNELS
+        for size, scale, unit in zip(channel.sizes, channel.scales, channel.units, strict=True)
+    ]
+    assert told[:2] == [('', '18', '1', 'rad'), ('', '18', '6.2', 'rad/s')]
+    assert told == table
+    told = [tuple(map(float, row[2:4])) for row in cells if row[0].startswith('5 i')]
+    cpg = HexapodLine().config.cpg
+    assert told == [getattr(cpg.ranges, name) for name in READINGS[cpg.reading]]
 
 
 def walk(env: HexapodLine, steps: int, seed: int = 0) -> tuple[np.ndarray, list[float]]:

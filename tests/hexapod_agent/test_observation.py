@@ -48,11 +48,12 @@ def test_only_chosen_topics_are_subscribed_to():
 def test_channels_keep_the_order_of_the_table():
     values = readings()
     values['line_offset'] = np.array([0.25])
-    values['height'] = np.array([0.1])
+    values['height'] = np.array([0.14])
     vector = ObservationSpec('E').assemble(values, np.full(30, 0.5))
     np.testing.assert_array_equal(vector[48:78], np.full(30, 0.5, np.float32))
     scale = {channel.name: channel.scales[0] for channel in CHANNELS}
     assert vector[78] == pytest.approx(0.25 / scale['line offset'])
+    assert vector[79] == pytest.approx((0.14 - 0.13) / scale['body height'])
     assert vector.dtype == np.float32
 
 
