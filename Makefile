@@ -24,7 +24,7 @@ $(VENV)/.ready: requirements.txt requirements-ros.txt requirements-dev.txt const
 	@python=$$(.ci/prerequisites) && "$$python" -m venv $(VENV)
 	@echo 'Installing the libraries and ROS 2 into $(VENV) ...'
 	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --progress-bar on \
-		-r requirements.txt -r requirements-ros.txt -r requirements-dev.txt
+		-r requirements.txt -r requirements-ros.txt -r requirements-dev.txt -c constraints.txt
 	@touch $@
 
 ros_ws/install/.ready: $(VENV)/.ready $(INTERFACES) $(INSTALLED)

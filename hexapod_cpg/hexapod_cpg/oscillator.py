@@ -59,11 +59,11 @@ class HopfConfig:
     alpha: float = 20.0
     """Convergence rate of x towards the limit cycle [1/s per squared radius]."""
     beta: float = 20.0
-    """Convergence rate of y."""
+    """Convergence rate of y towards the limit cycle [1/s per squared radius]."""
     coupling: float = 0.5
     """Strength delta of the coupling between legs [1/s]."""
     gait: str = 'tripod'
-    """Key of ``GAITS``."""
+    """Gait: tripod, tetrapod or wave."""
     swing_stance: bool = False
     """Let swing (y < 0) and stance take the gait's shares of the cycle, instead of half each."""
     sigmoid_gain: float = 50.0

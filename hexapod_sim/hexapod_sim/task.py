@@ -31,9 +31,13 @@ class TaskConfig:
     """Where the goal line runs along odom's x axis [m]."""
 
     velocity_weight: float = 1.0
+    """Reward per unit of the velocity term."""
     closeness_weight: float = 1.0
+    """Reward per unit of the closeness term."""
     orientation_weight: float = 0.5
+    """Cost per unit of the orientation penalty."""
     height_weight: float = 0.5
+    """Cost per unit of the height penalty."""
     alive_reward: float = 2.0
     """Constant earned in every step."""
 

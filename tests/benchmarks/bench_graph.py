@@ -1,0 +1,118 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Control periods per second without a learner: environment, composed worker, four processes."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+import rclpy
+from hexapod_agent.config import AgentConfig
+from hexapod_agent.env import HexapodLine
+from hexapod_agent.observation import ACTION_SIZE
+from hexapod_interfaces.action import TrainRun
+from rclpy.action import ActionClient
+from rclpy.experimental.events_executor import EventsExecutor
+from rclpy.node import Node
+from rclpy.task import Future
+
+EPISODES = 4
+OBSERVATIONS = 'ABCDE'
+# The buffer never holds a batch, so nothing is learned.
+NO_LEARNER = 'ddpg: {batch_size: 100000}\n'
+
+
+def environment() -> float:
+    """Return periods per second of the bare environment."""
+    env = HexapodLine(OBSERVATIONS, AgentConfig.load())
+    action = np.zeros(ACTION_SIZE, dtype=np.float32)
+    periods = 0
+    began = time.perf_counter()
+    for episode in range(EPISODES):
+        env.reset(seed=1, options={'episode': episode})
+        ended = False
+        while not ended:
+            _, _, terminated, truncated, _ = env.step(action)
+            ended = terminated or truncated
+            periods += 1
+    return periods / (time.perf_counter() - began)
+
+
+class Client:
+    """Sends runs to a worker."""
+
+    def __init__(self) -> None:
+        rclpy.init()
+        self.executor = EventsExecutor()
+        self.node = Node('bench')
+        self.executor.add_node(self.node)
+
+    def result(self, future: Future):
+        """Spin until a future is done."""
+        while not future.done():
+            self.executor.spin_once(timeout_sec=0.1)
+        return future.result()
+
+    def worker(self, namespace: str, config: Path) -> float:
+        """Return periods per second of a worker's second run; the first one warms it up."""
+        client = ActionClient(self.node, TrainRun, f'/{namespace}/train_run')
+        while not client.server_is_ready():
+            self.executor.spin_once(timeout_sec=0.1)
+        for episodes in (1, EPISODES):
+            goal = TrainRun.Goal(
+                run_id='bench',
+                observations=OBSERVATIONS,
+                seed=1,
+                episodes=episodes,
+                config=str(config),
+            )
+            began = time.perf_counter()
+            handle = self.result(client.send_goal_async(goal))
+            response = self.result(handle.get_result_async())
+            assert response.result.message == '', response.result.message
+        return EPISODES * 600 / (time.perf_counter() - began)
+
+
+def launched(client: Client, config: Path, namespace: str, composed: str) -> float:
+    """Launch a worker, measure it, end it."""
+    command = (
+        f'ros2 launch hexapod_bringup worker.launch.xml namespace:={namespace} '
+        f'composed:={composed}'
+    )
+    process = subprocess.Popen(shlex.split(command), stdout=subprocess.DEVNULL)
+    try:
+        return client.worker(namespace, config)
+    finally:
+        process.send_signal(signal.SIGINT)
+        process.wait(15.0)
+
+
+def main() -> None:
+    """Print the three rates and their ratios."""
+    os.environ.setdefault('OMP_NUM_THREADS', '1')
+    with tempfile.TemporaryDirectory() as directory:
+        config = Path(directory) / 'no_learner.yaml'
+        config.write_text(NO_LEARNER)
+        client = Client()
+        rates = {
+            'environment': environment(),
+            'composed worker': launched(client, config, 'composed', 'true'),
+            'four processes': launched(client, config, 'separate', 'false'),
+        }
+    for name, rate in rates.items():
+        share = rate / rates['environment']
+        print(f'{name:16} {rate:8.0f} periods/s  {share:5.2f} of the environment')
+    rclpy.shutdown()
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,73 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Who may import what: dependencies run one way, and ROS stays in the node files."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+# Each package and the ones of ours that it may import.
+MAY_IMPORT = {
+    'hexapod_sim': {'hexapod_sim'},
+    'hexapod_cpg': {'hexapod_cpg', 'hexapod_sim'},
+    'hexapod_agent': {'hexapod_agent', 'hexapod_cpg', 'hexapod_sim'},
+    'hexapod_doe': {'hexapod_doe', 'hexapod_agent', 'hexapod_cpg', 'hexapod_sim'},
+}
+OURS = {*MAY_IMPORT, 'hexapod_bringup'}
+FILES = [file for name in MAY_IMPORT for file in sorted((ROOT / name / name).rglob('*.py'))]
+# Besides the nodes: what turns numbers into messages, and the agent's side of a graph run.
+TOUCHES_ROS = {'messages.py', 'peers.py', 'graph_run.py'}
+MESSAGE_PACKAGES = {
+    'diagnostic_msgs', 'geometry_msgs', 'hexapod_interfaces', 'hexapod_node', 'nav_msgs',
+    'rcl_interfaces', 'rosgraph_msgs', 'sensor_msgs', 'std_srvs', 'trajectory_msgs',
+}  # fmt: skip
+
+
+def imported(file: Path) -> set[str]:
+    """Return the top-level packages that a file imports when it runs, type checking apart."""
+    tree = ast.parse(file.read_text(encoding='utf-8'))
+    found = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            found |= {alias.name.split('.')[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            found.add(node.module.split('.')[0])
+    return found - type_checking_only(tree)
+
+
+def type_checking_only(tree: ast.Module) -> set[str]:
+    """Return the packages imported under `if TYPE_CHECKING`."""
+    guarded = [
+        statement
+        for node in tree.body
+        if isinstance(node, ast.If) and getattr(node.test, 'id', '') == 'TYPE_CHECKING'
+        for statement in node.body
+    ]
+    return {s.module.split('.')[0] for s in guarded if isinstance(s, ast.ImportFrom) and s.module}
+
+
+def name(file: Path) -> str:
+    return str(file.relative_to(ROOT))
+
+
+@pytest.mark.parametrize('file', FILES, ids=name)
+def test_dependencies_run_one_way(file: Path) -> None:
+    package = file.relative_to(ROOT).parts[0]
+    assert imported(file) & OURS <= MAY_IMPORT[package]
+
+
+@pytest.mark.parametrize('file', FILES, ids=name)
+def test_only_node_files_import_rclpy(file: Path) -> None:
+    found = imported(file)
+    if not file.name.endswith('_node.py'):
+        assert 'rclpy' not in found
+        if file.name not in TOUCHES_ROS:
+            assert not found & MESSAGE_PACKAGES
+
+
+@pytest.mark.parametrize('file', FILES, ids=name)
+def test_files_stay_readable(file: Path) -> None:
+    assert len(file.read_text(encoding='utf-8').splitlines()) <= 300
