@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 from hexapod_agent.env import HexapodLine
-from hexapod_agent.observation import CHANNELS, ObservationError
+from hexapod_agent.observation import CHANNELS, LETTERS, ObservationError
 from hexapod_cpg.mapping import READINGS
 from hexapod_sim.task import episode_seed
 
@@ -23,7 +23,8 @@ def test_tables_of_the_docstring_are_those_of_the_code():
     """Counts, scales and units of the observation, value and half width of the actions."""
     rows = [line.strip().strip('|').split('|') for line in HexapodLine.__doc__.splitlines()]
     cells = [[cell.strip() for cell in row] for row in rows if len(row) == 5]
-    told = [(row[0].replace('always', ''), *row[2:]) for row in cells if row[2].isdigit()]
+    letters = ('always', *LETTERS)
+    told = [(row[0].replace('always', ''), *row[2:]) for row in cells if row[0] in letters]
     table = [
         (channel.letter, str(size), f'{scale:g}', unit)
         for channel in CHANNELS
