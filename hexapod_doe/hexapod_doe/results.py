@@ -213,6 +213,8 @@ def to_json(value: Any) -> Any:
         return to_json(value.tolist())
     if isinstance(value, (list, tuple)):
         return [to_json(item) for item in value]
+    if isinstance(value, Path):
+        return str(value)
     if isinstance(value, np.generic):
         return to_json(value.item())
     if isinstance(value, float):
@@ -221,6 +223,25 @@ def to_json(value: Any) -> Any:
 
 
 def write_json(analysis: Analysis, path: Path) -> None:
-    """Write `analysis.json`."""
-    record = {'schema': SCHEMA, **to_json(analysis)}
-    path.write_text(json.dumps(record, indent=1, allow_nan=False) + '\n', encoding='utf-8')
+    """Write `analysis.json`, one key a line; docs/analysis_json.md says what each one means."""
+    record = {'schema': SCHEMA, **_record(analysis)}
+    lines = (
+        f'{json.dumps(key)}: {json.dumps(value, ensure_ascii=False, allow_nan=False)}'
+        for key, value in record.items()
+    )
+    path.write_text('{\n' + ',\n'.join(lines) + '\n}\n', encoding='utf-8')
+
+
+def _record(analysis: Analysis) -> dict[str, Any]:
+    """Return an analysis as JSON values, with the learning curves by run."""
+    record = {
+        field.name: to_json(getattr(analysis, field.name))
+        for field in dataclasses.fields(analysis)
+        if field.name not in ('curves', 'compared')
+    }
+    record['curves'] = {
+        str(run): to_json(curve[['episode', 'return', 'average']])
+        for run, curve in analysis.curves.groupby('run_id', sort=False)
+    }
+    record['compared'] = [_record(other) for other in analysis.compared]
+    return record

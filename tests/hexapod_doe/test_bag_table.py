@@ -1,6 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,6 +12,8 @@ from hexapod_doe.plan_file import write_plan
 from hexapod_doe.plan_table import make_plan
 from hexapod_doe.plan_types import Confirmation
 from hexapod_doe.table import TableError
+
+from hexapod_doe import analyze
 
 WriteBag = Callable[..., Path]
 
@@ -44,6 +47,19 @@ def test_learning_curves(campaign: Path) -> None:
     curve = table.curves[table.curves['case'] == 3]
     assert curve['episode'].tolist() == [0, 1, 2, 3]
     assert curve['return'].tolist() == [0.0, 10.0, 20.0, 30.0]
+
+
+def test_the_command_line_reads_a_campaign(
+    campaign: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(analyze, 'write_report', lambda analysis, out: out / 'index.html')
+    assert analyze.main([str(campaign), '--out', str(tmp_path / 'out')]) == 0
+    analysis = json.loads((tmp_path / 'out' / 'analysis.json').read_text())
+    assert analysis['design']['name'] == 'eighth'
+    assert analysis['options']['confirmation']['runs'] == 7
+    assert analysis['curves']['case03_rep01']['return'] == [0.0, 10.0, 20.0, 30.0]
+    assert [step['name'] for step in analysis['steps']] == ['initial', 'reduced']
+    assert analysis['purchase']['cheapest'] in analysis['ranking']
 
 
 def test_several_bags_are_a_table_too(campaign: Path) -> None:
