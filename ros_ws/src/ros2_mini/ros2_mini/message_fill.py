@@ -10,6 +10,7 @@ is an error that names the field, because rclpy itself checks nothing by default
 import array
 import importlib
 from collections.abc import Callable
+from functools import partial
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -86,10 +87,9 @@ def _fill(message: Any, values: Any, path: str, stamps: list[StampSetter]) -> No
             raise _FieldError(where, value, f'a field of {name_of}, which has: {known}')
         kind = kinds[name]
         if value == 'now' and _named(kind) == 'builtin_interfaces/msg/Time':
-            stamps.append(lambda now, name=name: setattr(message, name, now))
+            stamps.append(partial(setattr, message, name))
         elif value == 'auto' and _named(kind) == 'std_msgs/msg/Header':
-            header = getattr(message, name)
-            stamps.append(lambda now, header=header: setattr(header, 'stamp', now))
+            stamps.append(partial(setattr, getattr(message, name), 'stamp'))
         else:
             setattr(message, name, _convert(value, kind, where, stamps))
 
@@ -133,11 +133,12 @@ def _convert_array(value: Any, kind: Any, path: str, stamps: list[StampSetter]) 
     return array.array(numpy_type.char, items)
 
 
-def _numpy_type(type_name: str) -> np.dtype | None:
+def _numpy_type(type_name: str) -> np.dtype[Any] | None:
     """Return the element type of an array of numbers; None where arrays are plain lists."""
     if type_name in _INTEGERS:
         return np.dtype({'char': 'uint8', 'wchar': 'uint16'}.get(type_name, type_name))
-    return {'float': np.dtype('float32'), 'double': np.dtype('float64')}.get(type_name)
+    real = {'float': 'float32', 'double': 'float64'}.get(type_name)
+    return np.dtype(real) if real else None
 
 
 def _convert_string(value: Any, kind: Any, path: str) -> str:

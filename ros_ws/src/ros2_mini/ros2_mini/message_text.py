@@ -66,7 +66,11 @@ def plain(
         no_arr: See `message_to_yaml`.
         no_str: See `message_to_yaml`.
     """
-    options = {'truncate_length': truncate_length, 'no_arr': no_arr, 'no_str': no_str}
+    options: dict[str, Any] = {
+        'truncate_length': truncate_length,
+        'no_arr': no_arr,
+        'no_str': no_str,
+    }
     if isinstance(value, bytes):
         return _cut(value.decode('latin-1'), truncate_length)
     if isinstance(value, str):

@@ -99,8 +99,9 @@ _CLASSES = {
 
 def describe(template: Template) -> str:
     """Return a template in the words of the launch library: text quoted, `+` between pieces."""
+    pieces = template or ('',)
     return ' + '.join(
-        f"'{piece}'" if isinstance(piece, str) else _describe_one(piece) for piece in template
+        f"'{piece}'" if isinstance(piece, str) else _describe_one(piece) for piece in pieces
     )
 
 
