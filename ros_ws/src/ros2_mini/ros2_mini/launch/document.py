@@ -118,12 +118,11 @@ def _parse(path: Path) -> Element:
 
 
 def _check(element: Element, rule: Rule) -> None:
-    conditions = _CONDITION if element.tag in ACTIONS else ()
     for child in element.children:
         if child.tag not in rule.tags:
             raise CommandError(f'{child.where} is not supported {_inside(element, rule.tags)}')
         nested = NESTED.get((element.tag, child.tag))
-        _check_attributes(child, nested or RULES[child.tag], () if nested else conditions)
+        _check_attributes(child, nested or RULES[child.tag], () if nested else _CONDITION)
         _check(child, nested or RULES[child.tag])
 
 

@@ -16,16 +16,12 @@ from ros2_mini.launch.scope import Scope
 Scalar: TypeAlias = bool | int | float | str
 ParameterValue: TypeAlias = Scalar | list[Scalar]
 
-TYPES: dict[str, type | None] = {
+TYPES: dict[str, type[Scalar] | None] = {
     'yaml': None,
     'bool': bool,
     'int': int,
     'float': float,
     'str': str,
-    'list_of_bool': bool,
-    'list_of_int': int,
-    'list_of_float': float,
-    'list_of_str': str,
 }
 
 
@@ -84,17 +80,13 @@ def parameter_value(text: str, type_name: str = 'yaml') -> ParameterValue:
     if type_name not in TYPES:
         raise ValueError(f"parameter type '{type_name}' is unknown, expected {', '.join(TYPES)}")
     kind = TYPES[type_name]
-    if kind is str and type_name == 'str':
+    if kind is str:
         return text
     try:
         value = yaml.safe_load(text) if text else text
     except yaml.YAMLError as error:
         raise ValueError(f'value \'{text}\' is no YAML; give a text with type="str"') from error
-    if kind is None:
-        return _checked(value, text)
-    if type_name.startswith('list_of_'):
-        return [_as(kind, item, text) for item in _list(value, text)]
-    return _as(kind, value, text)
+    return _checked(value, text) if kind is None else _as(kind, value, text)
 
 
 def _checked(value: object, text: str) -> ParameterValue:
@@ -109,18 +101,12 @@ def _checked(value: object, text: str) -> ParameterValue:
     return value
 
 
-def _list(value: object, text: str) -> list[object]:
-    if not isinstance(value, list):
-        raise ValueError(f"value '{text}' is no list")
-    return value
-
-
-def _as(kind: type, item: object, text: str) -> Scalar:
-    """Return one item as `kind`; an int passes for a float, and 1 and 0 for a bool."""
-    if kind is float and type(item) in (int, float):
-        return float(str(item))
-    if kind is bool and item in (0, 1):
-        return bool(item)
-    if type(item) is not kind:
+def _as(kind: type[Scalar], value: object, text: str) -> Scalar:
+    """Return a value as `kind`; an int passes for a float, and 1 and 0 for a bool."""
+    if kind is float and type(value) in (int, float):
+        return float(str(value))
+    if kind is bool and value in (0, 1):
+        return bool(value)
+    if not isinstance(value, kind) or isinstance(value, bool) is not (kind is bool):
         raise ValueError(f"value '{text}' is no {kind.__name__}")
-    return item  # type: ignore[return-value]
+    return value
