@@ -12,7 +12,7 @@ from hexapod_doe.attribution import alias_safe
 from hexapod_doe.choice import model_failures
 from hexapod_doe.conclusions import conclude
 from hexapod_doe.confirm import confirm
-from hexapod_doe.describe import design_caveats, failure_caveat, summarise
+from hexapod_doe.describe import design_caveats, failure_caveat, model_caveats, summarise
 from hexapod_doe.estimands import estimand, pseudo_values
 from hexapod_doe.estimate import estimates
 from hexapod_doe.options import Options
@@ -61,13 +61,9 @@ def _analyse(
     outlook = final_outlook(state, rng)
     if failures is not None and not options.article:
         outlook = failures.outlook
-    caveats = [*base.caveats]
-    if failures is not None:
-        caveats.append(failure_caveat(failures.record))
-    return dataclasses.replace(
+    analysis = dataclasses.replace(
         base,
         table=base.table.assign(failed=False if failures is None else failures.failed),
-        caveats=tuple(caveats),
         choice=outlook.ranking[0],
         choice_rule=f'highest expected response by the {outlook.model}',
         two_part=None if failures is None else failures.record,
@@ -75,6 +71,9 @@ def _analyse(
         **conclude(table, outlook, options, rng),
         confirmation=confirm(outlook, options.confirmation, confirmation_runs),
     )
+    failed = [] if failures is None else [failure_caveat(failures.record)]
+    caveats = (*base.caveats, *failed, *model_caveats(analysis))
+    return dataclasses.replace(analysis, caveats=caveats)
 
 
 def _with_estimand(table: RunTable, options: Options) -> RunTable:

@@ -6,11 +6,14 @@
 from collections.abc import Mapping
 
 from hexapod_doe.findings import TwoPart
-from hexapod_doe.results import DesignSummary
+from hexapod_doe.results import Analysis, DesignSummary
 from hexapod_doe.table import RunTable, describe_words, missing_cases
 
 _MISSING_SHARE = 0.25
 """With more of a fraction missing than this the design was never meant to be that fraction."""
+
+_NAMED = 5
+"""Sets that a sentence names before it counts the rest."""
 
 
 def summarise(table: RunTable, aliases: Mapping[str, str]) -> DesignSummary:
@@ -55,6 +58,35 @@ def design_caveats(design: DesignSummary) -> list[str]:
     low, high = design.replicates
     if low != high:
         caveats.append(f'Cases have between {low} and {high} runs: the fit weighs each run alike.')
+    return caveats
+
+
+def model_caveats(analysis: Analysis) -> list[str]:
+    """Return what a reader must know about the fit, the transform and the names of effects."""
+    caveats = []
+    lack, alpha = analysis.final.lack_of_fit, analysis.options['alpha']
+    if lack is not None and lack.p < alpha:
+        caveats.append(
+            f'The final model does not fit all cases (lack of fit p = {lack.p:.2g}): they differ '
+            'from it by more than their runs differ among themselves, so that its classical '
+            'intervals are too short.'
+        )
+    transform = analysis.transform
+    if transform is not None and transform.lambda_ci is not None:
+        low, high = transform.lambda_ci
+        if low <= 1 <= high:
+            caveats.append('λ = 1 is within its interval: the response needs no transform.')
+    attribution = analysis.attribution
+    if attribution is not None and attribution.ambiguous:
+        names = ', '.join(' or '.join(group) for group in attribution.ambiguous.values())
+        safe, total = len(attribution.safe), len(analysis.predictions)
+        winners = ', '.join(list(attribution.winners)[:_NAMED])
+        if len(attribution.winners) > _NAMED:
+            winners += f' and {len(attribution.winners) - _NAMED} more'
+        caveats.append(
+            f'The runs do not tell which effect is real: {names}. {total - safe} of {total} '
+            f'predictions depend on the name; best under some name: {winners}.'
+        )
     return caveats
 
 

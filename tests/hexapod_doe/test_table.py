@@ -33,8 +33,10 @@ def campaign(replicates: int = 4, name: str = 'eighth', seed: int = 5) -> pd.Dat
 
 
 @pytest.fixture(autouse=True)
-def _without_report(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Leave out the report, which its own tests draw."""
+def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave out the report, which its own tests draw, and shorten what is sampled."""
+    monkeypatch.setattr('hexapod_doe.averaging.SWEEPS', 20)
+    monkeypatch.setattr('hexapod_doe.estimate.RESAMPLES', 200)
     monkeypatch.setattr(analyze, 'write_report', lambda analysis, out: out / 'index.html')
 
 
