@@ -14,6 +14,7 @@ from pathlib import Path
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
 from hexapod_doe import report_findings as findings
+from hexapod_doe import report_models as models
 from hexapod_doe import report_tables as tables
 from hexapod_doe import report_text as text
 from hexapod_doe.figures import effects, learning, predictions, purchase, residuals, significance
@@ -124,7 +125,7 @@ def _evidence(analysis: Analysis) -> Section:
         effects.main_effects,
         tables.main_effects,
         effects.interactions,
-        tables.model_terms,
+        models.model_terms,
         significance.pareto,
         significance.half_normal,
     )
@@ -164,7 +165,7 @@ def _diagnostics(analysis: Analysis) -> Section:
         'How well the model fits',
         'What the models leave unexplained, and how the final one came about.',
         analysis,
-        tables.steps,
+        models.steps,
         *(
             _of_step(draw, step)
             for step in first_and_last
@@ -175,9 +176,9 @@ def _diagnostics(analysis: Analysis) -> Section:
             for step in judged[-1:]
             for draw in (residuals.against_fit, residuals.against_order)
         ),
-        tables.checks,
-        tables.transform,
-        tables.elimination,
+        models.checks,
+        models.transform,
+        models.elimination,
     )
 
 

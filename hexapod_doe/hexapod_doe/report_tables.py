@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The tables of the report on the model: its history, its terms, its predictions, the runs."""
+"""The tables of the report: what one is, and those of predictions, effects, aliases and runs."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -9,10 +9,12 @@ from pathlib import Path
 
 import pandas as pd
 
-from hexapod_doe.formats import MISSING, aligned, chance, interval, number, probability, signed
-from hexapod_doe.results import Analysis, Step
+from hexapod_doe.formats import MISSING, aligned, chance, interval
+from hexapod_doe.results import Analysis, Prediction
 from hexapod_doe.standing import Standing, standings
-from hexapod_doe.terms import CONSTANT
+
+MAX_ROWS = 512
+"""Sets listed on the page; the CSV has all."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +40,9 @@ class Table:
 
 def predictions(analysis: Analysis) -> Table:
     """Tabulate all sets, best first."""
-    ranked, ranks = standings(analysis), analysis.rank_uncertainty
+    every, ranks = standings(analysis), analysis.rank_uncertainty
+    ranked = every[:MAX_ROWS]
+    finals = {p.label: p for p in analysis.predictions}
     cells = {
         'rank': [f'{s.rank}' for s in ranked],
         'set': [s.label for s in ranked],
@@ -56,83 +60,13 @@ def predictions(analysis: Analysis) -> Table:
         }
     return Table(
         'predictions',
-        f'All {len(ranked)} sets',
+        f'All {len(every)} sets'
+        if every == ranked
+        else f'The {MAX_ROWS} best of {len(every)} sets',
         f'Intervals and ranks hold with {100 * analysis.level:g} %. Safe: the prediction is the '
         'same whichever name a confounded sum is given.',
         cells,
-        pd.DataFrame([_prediction_record(analysis, s) for s in ranked]),
-    )
-
-
-def steps(analysis: Analysis) -> Table:
-    """Tabulate the models from first to last: the improvement table."""
-    found = analysis.steps
-    return Table(
-        'steps',
-        'From the first to the final model',
-        'R² of the fitted runs, adjusted for the number of terms, for runs left out one at a time '
-        '(predicted) and for whole cases left out; s is on the scale of the step.',
-        {
-            'model': [f'{step.name}: {step.description}' for step in found],
-            'runs': [f'{step.n}' for step in found],
-            'terms': [f'{len(step.terms)}' for step in found],
-            'R²': [number(step.r2) for step in found],
-            'adjusted': [number(step.r2_adj) for step in found],
-            'predicted': [number(step.r2_pred) for step in found],
-            'by case': [number(step.r2_pred_cases) for step in found],
-            's': [number(step.s) for step in found],
-            'lack of fit p': [
-                probability(step.lack_of_fit.p if step.lack_of_fit else None) for step in found
-            ],
-        },
-        pd.DataFrame([_step_record(step) for step in found]),
-    )
-
-
-def model_terms(analysis: Analysis) -> Table:
-    """Tabulate the terms of the final model, each with its alias string."""
-    step = analysis.final
-    columns = {
-        name: [getattr(step, name).get(term) for term in step.terms]
-        for name in ('effects', 'coef', 'se', 't', 'p')
-    }
-    names = [step.aliases.get(term, term) for term in step.terms]
-    scale = '; the scale is that of the transformed response' if step.scale != 'response' else ''
-    return Table(
-        'model_terms',
-        'Terms of the final model',
-        'An effect is the mean response with the term at +1 minus that at −1, twice the '
-        f'coefficient. A sum is all that the cases can see of its terms{scale}.',
-        {
-            'term': ['constant' if name == CONSTANT else name for name in names],
-            'effect': aligned(columns['effects'], 4, sign=True),
-            'coefficient': aligned(columns['coef'], 5, sign=True),
-            'standard error': [number(value) for value in columns['se']],
-            't': aligned(columns['t'], 4, sign=True),
-            'p': [probability(value) for value in columns['p']],
-        },
-        pd.DataFrame({'term': step.terms, 'alias': names, **columns}),
-    )
-
-
-def elimination(analysis: Analysis) -> Table | None:
-    """Tabulate the backward elimination, one row per term that was dropped."""
-    dropped = analysis.elimination
-    if not dropped:
-        return None
-    return Table(
-        'elimination',
-        'Terms that were dropped, in order',
-        'At each step the term with the largest p goes, if no remaining term contains it.',
-        {
-            'step': [f'{removal.step}' for removal in dropped],
-            'term': [removal.alias for removal in dropped],
-            'p': [probability(removal.p) for removal in dropped],
-            's afterwards': aligned([removal.s for removal in dropped], 4),
-            'R² afterwards': [number(removal.r2) for removal in dropped],
-            'adjusted': [number(removal.r2_adj) for removal in dropped],
-        },
-        pd.DataFrame([vars(removal) for removal in dropped]),
+        pd.DataFrame([_prediction_record(analysis, s, finals) for s in every]),
     )
 
 
@@ -200,9 +134,11 @@ def _ranks(bounds: tuple[int, int] | None) -> str:
     return f'{low}' if low == high else f'{low} to {high}'
 
 
-def _prediction_record(analysis: Analysis, standing: Standing) -> dict[str, object]:
+def _prediction_record(
+    analysis: Analysis, standing: Standing, finals: Mapping[str, Prediction]
+) -> dict[str, object]:
     ranks, label = analysis.rank_uncertainty, standing.label
-    final = next(p for p in analysis.predictions if p.label == label)
+    final = finals[label]
     extra = {} if ranks is None else {
         'p_best': ranks.p_best.get(label), 'p_top3': ranks.p_top3.get(label)
     }  # fmt: skip
@@ -223,68 +159,3 @@ def _prediction_record(analysis: Analysis, standing: Standing) -> dict[str, obje
         'final_model_ci_high': final.ci[1],
         **extra,
     }
-
-
-def _step_record(step: Step) -> dict[str, object]:
-    names = ('name', 'scale', 'n', 'r2', 'r2_adj', 'r2_pred', 'r2_pred_cases', 'press', 's')
-    lack = step.lack_of_fit
-    return {
-        **{name: getattr(step, name) for name in names},
-        'terms': len(step.terms),
-        'df_error': step.df_error,
-        'sse': step.sse,
-        'lack_of_fit_p': lack.p if lack else None,
-    }
-
-
-def checks(analysis: Analysis) -> Table | None:
-    """Tabulate the tests of the model as a whole: lack of fit, curvature, Lenth's margins."""
-    rows: list[tuple[str, str, str, float | None]] = []
-    lack, curvature, lenth = analysis.final.lack_of_fit, analysis.curvature, analysis.lenth
-    if lack is not None:
-        test = f'F({lack.df_lack_of_fit}, {lack.df_pure_error}) = {number(lack.f)}'
-        rows.append(('lack of fit', 'cases against the spread of their runs', test, lack.p))
-    if curvature is not None:
-        test = f'difference {signed(curvature.difference)}'
-        rows.append(('curvature', 'centre points against the other runs', test, curvature.p))
-    if lenth is not None:
-        test = f'ME {number(lenth.margin)}, SME {number(lenth.simultaneous_margin)}'
-        rows.append(('Lenth’s margins', f'pseudo standard error {number(lenth.pse)}', test, None))
-    if not rows:
-        return None
-    return Table(
-        'checks',
-        'Tests of the model',
-        'A small p says that the model misses something that the runs show.',
-        {
-            'test': [name for name, *_ in rows],
-            'of': [what for _, what, *_ in rows],
-            'value': [test for _, _, test, _ in rows],
-            'p': [probability(p) for *_, p in rows],
-        },
-        pd.DataFrame(rows, columns=['test', 'of', 'value', 'p']),
-    )
-
-
-def transform(analysis: Analysis) -> Table | None:
-    """Tabulate the transform of the response, and how λ depends on the shift before it."""
-    found = analysis.transform
-    if found is None:
-        return None
-    rows = [(None, found.shift, found.lambda_hat), *(
-        (s.margin, s.shift, s.lambda_hat) for s in found.sensitivity
-    )]  # fmt: skip
-    used = f'{found.kind}, λ = {found.lambda_:g}'
-    bounds = interval(found.lambda_ci) if found.lambda_ci else MISSING
-    return Table(
-        'transform',
-        f'The response was transformed: {used}',
-        f'Shift: {found.shift_rule}. 95 % interval of λ given the model: {bounds}. Another shift '
-        'would give another λ, which has therefore no meaning of its own.',
-        {
-            'margin, share of range': ['as used', *(number(margin) for margin, *_ in rows[1:])],
-            'shift': aligned([shift for _, shift, _ in rows], 5),
-            'best λ': aligned([best for *_, best in rows]),
-        },
-        pd.DataFrame(rows, columns=['margin', 'shift', 'lambda_hat']),
-    )

@@ -21,7 +21,7 @@ from hexapod_doe.formats import (
 )
 from hexapod_doe.planner import FULL_TRAINING
 from hexapod_doe.results import Analysis
-from hexapod_doe.standing import Standing, deciding_parts, standings
+from hexapod_doe.standing import Standing, all_alike, deciding_parts, standings
 
 TOUR_EPISODES = 100
 """With fewer episodes than this an agent has hardly begun to learn."""
@@ -75,16 +75,14 @@ def caution(analysis: Analysis) -> str:
 
 def headline(analysis: Analysis) -> str:
     """Return the answer in one sentence."""
-    chosen = chosen_standing(analysis)
-    if not distinguishes(analysis):
-        return f'No set of sensors stands out yet; {name_of(chosen)} comes first'
-    return f'Choose {name_of(chosen)}'
-
-
-def distinguishes(analysis: Analysis) -> bool:
-    """Tell whether the final model predicts runs that it has not seen better than their mean."""
-    predicted = analysis.final.r2_pred
-    return predicted is not None and predicted > 0
+    name = name_of(chosen_standing(analysis))
+    if all_alike(standings(analysis)):
+        return 'These runs show no difference between the sets of sensors'
+    if analysis.final.r2_pred is None:
+        return f'{capitalised(name)} comes first; how surely, these runs cannot say'
+    if analysis.final.r2_pred <= 0:
+        return f'No set of sensors stands out yet; {name} comes first'
+    return f'Choose {name}'
 
 
 def chosen_standing(analysis: Analysis) -> Standing:
@@ -131,24 +129,35 @@ def sureness(analysis: Analysis) -> list[str]:
     """Return sentences on how far the answer can be trusted."""
     best = chosen_standing(analysis)
     sentences = [_data(analysis), _model(analysis)]
-    if not best.tested:
+    if not best.tested and not all_alike(standings(analysis)):
         sentences.append(
             f'{best.label} was not trained in this campaign: its reward is a prediction until '
             'runs confirm it.'
         )
     if not best.alias_safe:
         sentences.append(_alias_warning(analysis))
-    if analysis.rank_uncertainty is not None:
+    if analysis.rank_uncertainty is not None and not all_alike(standings(analysis)):
         sentences.append(_rank(analysis))
     if analysis.two_part is not None and analysis.two_part.failures:
         sentences.append(_failures(analysis))
     return sentences
 
 
+def settings(analysis: Analysis) -> str:
+    """Return the options that were set, for the foot of the page."""
+    plain_types = (str, int, float)  # bool is an int
+    return ', '.join(
+        f'{name.replace("_", " ")} {str(value).lower()}'
+        for name, value in analysis.options.items()
+        if isinstance(value, plain_types)
+    )
+
+
 def _certainty(analysis: Analysis, best: Standing) -> Fact:
-    if analysis.rank_uncertainty is not None:
-        first = analysis.rank_uncertainty.p_best.get(best.label)
-        top = analysis.rank_uncertainty.p_top3.get(best.label)
+    ranks = analysis.rank_uncertainty
+    if ranks is not None and not all_alike(standings(analysis)):
+        first = ranks.p_best.get(best.label)
+        top = ranks.p_top3.get(best.label)
         return Fact('chance to be the best set', chance(first), f'in the top 3: {chance(top)}')
     rivals = sum(
         best.ci[0] is not None and p.ci[1] is not None and p.ci[1] >= best.ci[0]

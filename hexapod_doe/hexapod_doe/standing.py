@@ -7,7 +7,7 @@ Without failed runs that is the final model. With them it is the two-part model:
 decides the order, its full form states the intervals.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from hexapod_doe.findings import TwoPart
@@ -61,6 +61,11 @@ def standings(analysis: Analysis) -> list[Standing]:
         )
         for rank, label in enumerate(parts.ranking, start=1)
     ]
+
+
+def all_alike(found: Sequence[Standing]) -> bool:
+    """Tell whether the model predicts the same for every set, so that their order says nothing."""
+    return found[0].value == found[-1].value
 
 
 def _by_final(p: Prediction) -> Standing:

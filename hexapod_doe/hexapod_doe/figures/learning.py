@@ -14,6 +14,10 @@ from hexapod_doe.figures.style import BLUE, INK, MUTED, ORANGE, SURFACE
 from hexapod_doe.formats import count, number
 from hexapod_doe.results import Analysis
 
+MAX_PANELS = 64
+"""Learning curves are drawn for at most so many cases, the best ones."""
+MAX_NAMES = 64
+"""More cases than this are drawn without their names, closer together."""
 POINTS = 40
 """A curve is drawn through at most so many episodes; the bags hold them all."""
 
@@ -27,12 +31,13 @@ def runs_by_case(analysis: Analysis) -> Chart:
 
     def draw(width: float) -> Figure:
         wide = is_wide(width)
-        figure, axes = canvas(width, 0.7 + 0.17 * len(order))
+        named = len(order) <= MAX_NAMES
+        figure, axes = canvas(width, 0.7 + (0.17 if named else 0.05) * len(order))
         rows = table['label'].map({label: row for row, label in enumerate(order)})
         _dots(axes, table['response'], rows, table['kept'], table['failed'])
         if repeated:
             axes.plot(means, range(len(order)), '|', color=INK, markersize=9, markeredgewidth=1.6)
-        axes.set_yticks(range(len(order)), order)
+        axes.set_yticks(range(len(order)) if named else [], order if named else [])
         axes.tick_params(axis='y', labelcolor=INK, labelsize=8.5 if wide else 7.5)
         axes.set_ylim(len(order) - 0.4, -0.6)
         axes.grid(visible=False, axis='y')
@@ -56,7 +61,8 @@ def learning_curves(analysis: Analysis) -> Chart | None:
     if analysis.curves.empty:
         return None
     curves = analysis.curves[['case', 'label', 'run_id', 'episode', 'average']]
-    data = _thinned(curves)
+    best = analysis.table.groupby('case')['response'].mean().nlargest(MAX_PANELS).index
+    data = _thinned(curves[curves['case'].isin(best)])
     cases = data.drop_duplicates('case').sort_values('case')[['case', 'label']]
 
     def draw(width: float) -> Figure:
@@ -74,7 +80,8 @@ def learning_curves(analysis: Analysis) -> Chart | None:
         'learning_curves',
         _curves_title(curves),
         'Thin lines are training runs, the thick line is the mean of the case; all panels share '
-        'their axes. The number is the case, the letters are its sensors.',
+        'their axes. The number is the case, the letters are its sensors.'
+        + (f' The {MAX_PANELS} best cases are shown.' if len(cases) == MAX_PANELS else ''),
         data,
         draw,
     )

@@ -15,10 +15,12 @@ from hexapod_doe.figures.parts import canvas, design_label, designs, is_wide, un
 from hexapod_doe.figures.style import BLUE, GRID, INK, MARKERS, MUTED, SERIES, SURFACE
 from hexapod_doe.formats import count, number
 from hexapod_doe.results import Analysis
-from hexapod_doe.standing import Standing, deciding_parts, standings
+from hexapod_doe.standing import Standing, all_alike, deciding_parts, standings
 
 TOP = 15
 """Sets shown one by one."""
+MAX_BARS = 256
+"""More intervals than this are drawn as one band."""
 
 
 def top_sets(analysis: Analysis) -> Chart:
@@ -42,7 +44,9 @@ def top_sets(analysis: Analysis) -> Chart:
     rivals = sum(_overlap(best, other) for other in ranked[1:])
     level = f'{100 * analysis.level:g} %'
     title = f'{best.label} is predicted best'
-    if best.ci[0] is not None:
+    if all_alike(ranked):
+        title = 'All sets are predicted alike'
+    elif best.ci[0] is not None:
         title += f'; the {level} intervals of {count(rivals, "other set")} overlap its own'
     return Chart(
         'top_sets',
@@ -72,11 +76,14 @@ def ranked_predictions(analysis: Analysis) -> Chart:
             axes.legend(loc='lower left', handlelength=1)
         return figure
 
-    best, worst = standings(analysis)[0], standings(analysis)[-1]
-    fall = best.value - worst.value
+    ranked = standings(analysis)
+    best, worst = ranked[0], ranked[-1]
+    title = f'From {best.label} to {worst.label} the prediction falls by '
     return Chart(
         'ranked_predictions',
-        f'From {best.label} to {worst.label} the prediction falls by {number(fall)}',
+        'All sets are predicted alike'
+        if all_alike(ranked)
+        else title + number(best.value - worst.value),
         f'All {len(analysis.predictions)} sets in the order of their prediction, each design in '
         f'its own order, with the {level} interval of the mean. Filled points were trained.'
         + _basis(analysis),
@@ -174,7 +181,10 @@ def _draw_ranked(axes: Axes, ranked: Sequence[Standing], index: int, label: str)
     fits = np.array([p.value for p in ranked])
     bounds = np.array([[np.nan if b is None else b for b in p.ci] for p in ranked])
     tested = np.array([p.tested for p in ranked])
-    axes.vlines(ranks, bounds[:, 0], bounds[:, 1], color=colour, linewidth=1, alpha=0.45)
+    if len(ranked) > MAX_BARS:
+        axes.fill_between(ranks, bounds[:, 0], bounds[:, 1], color=colour, alpha=0.3, linewidth=0)
+    else:
+        axes.vlines(ranks, bounds[:, 0], bounds[:, 1], color=colour, linewidth=1, alpha=0.45)
     for part, face in ((~tested, SURFACE), (tested, colour)):
         axes.plot(ranks[part], fits[part], marker, color=colour, markerfacecolor=face,
                   markersize=3.2, markeredgewidth=0.8)  # fmt: skip

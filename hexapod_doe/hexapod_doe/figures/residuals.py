@@ -12,7 +12,7 @@ from scipy import stats
 from hexapod_doe.figures.chart import Chart
 from hexapod_doe.figures.parts import canvas
 from hexapod_doe.figures.style import BLUE, INK, MUTED, ORANGE, SURFACE
-from hexapod_doe.formats import count, number
+from hexapod_doe.formats import count, number, number_fixed
 from hexapod_doe.results import Analysis, Step
 
 BINS = 20
@@ -46,7 +46,7 @@ def histogram(analysis: Analysis, step: Step) -> Chart:
     shape = f'lean {side}' if abs(skew) > 0.5 else 'are symmetric'
     return Chart(
         f'residual_histogram_{step.name}',
-        f'Residuals of the {step.name} model {shape} (skewness {number(skew, 2)})',
+        f'Residuals of the {step.name} model {shape} (skewness {number_fixed(skew, 2)})',
         f'{count(step.n, "run")}, {BINS} bins; the curve is a normal one of equal spread.',
         pd.DataFrame({'from': edges[:-1], 'to': edges[1:], 'runs': counts}),
         draw,

@@ -115,6 +115,20 @@ def test_runs_that_failed_are_counted(campaign, tour):
     assert learning.runs_by_case(tour).title.startswith('16 runs, one of each case')
 
 
+def test_many_sets_are_drawn_as_a_band_and_many_cases_without_names(tour, monkeypatch):
+    monkeypatch.setattr(predictions, 'MAX_BARS', 100)
+    monkeypatch.setattr(learning, 'MAX_NAMES', 10)
+    monkeypatch.setattr(learning, 'MAX_PANELS', 8)
+    band = _axes(predictions.ranked_predictions(tour))[0].collections
+    assert type(band[0]).__name__ == 'FillBetweenPolyCollection'
+    assert len(_axes(learning.runs_by_case(tour))[0].get_yticks()) == 0
+    curves = learning.learning_curves(tour)
+    assert len(_axes(curves)) == 8
+    assert 'The 8 best cases' in curves.caption
+    means = tour.table.groupby('case')['response'].mean()
+    assert set(curves.data['case']) == set(means.nlargest(8).index)
+
+
 def test_learning_curves_have_a_panel_per_case(campaign, tour):
     chart = learning.learning_curves(campaign)
     assert len(_axes(chart)) == len(_axes(chart, NARROW)) == 16

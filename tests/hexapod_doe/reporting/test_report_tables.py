@@ -10,11 +10,12 @@ import pytest
 from hexapod_doe.report_tables import Table
 
 from hexapod_doe import report_findings as findings
+from hexapod_doe import report_models as models
 from hexapod_doe import report_tables as tables
 
 MAKERS = [
-    tables.predictions, tables.steps, tables.model_terms, tables.elimination, tables.aliases,
-    tables.main_effects, tables.runs, tables.checks, tables.transform, findings.choices,
+    tables.predictions, models.steps, models.model_terms, models.elimination, tables.aliases,
+    tables.main_effects, tables.runs, models.checks, models.transform, findings.choices,
     findings.attribution, findings.failure_model, findings.two_part, findings.averaging,
     findings.confirmation, findings.devices, findings.front, findings.breakage,
 ]  # fmt: skip
@@ -39,15 +40,15 @@ def test_the_campaign_has_every_table_but_a_transform(campaign):
 
 
 def test_each_term_is_printed_with_its_alias_string(tour):
-    names = tables.model_terms(tour).cells['term']
+    names = models.model_terms(tour).cells['term']
     assert names[0] == 'constant'
     first = replace(tour, steps=tour.steps[:1])
-    assert 'AB + CE + FG' in tables.model_terms(first).cells['term']
+    assert 'AB + CE + FG' in models.model_terms(first).cells['term']
 
 
 def test_missing_numbers_are_dashes(tour):
     first = replace(tour, steps=tour.steps[:1])  # saturated: no error
-    cells = tables.model_terms(first).cells
+    cells = models.model_terms(first).cells
     assert set(cells['standard error']) == set(cells['p']) == {'–'}
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pandas as pd
 import pytest
+from hexapod_doe.figures import predictions
 from hexapod_doe.table import CURVE_COLUMNS
 
 from hexapod_doe import report_text as text
@@ -53,6 +54,28 @@ def test_a_model_that_predicts_nothing_chooses_nothing(tour):
     blind = replace(tour, steps=(*tour.steps[:-1], final))
     assert text.headline(blind).startswith('No set of sensors stands out yet; ')
     assert any('worse than their mean' in sentence for sentence in text.sureness(blind))
+
+
+def test_a_saturated_model_cannot_say_how_sure_it_is(tour):
+    saturated = replace(tour, steps=tour.steps[:1])
+    assert text.headline(saturated).endswith('comes first; how surely, these runs cannot say')
+    assert any('no error left' in sentence for sentence in text.sureness(saturated))
+
+
+def test_a_model_without_terms_sees_no_difference(tour):
+    same = tuple(replace(p, fit=1.0) for p in tour.predictions)
+    blank = replace(tour, predictions=same)
+    assert text.headline(blank) == 'These runs show no difference between the sets of sensors'
+    assert text.facts(blank)[2].label == 'sets not told from it'
+    assert predictions.top_sets(blank).title == 'All sets are predicted alike'
+    assert predictions.ranked_predictions(blank).title == 'All sets are predicted alike'
+
+
+def test_the_foot_names_the_options_that_were_set(tour):
+    line = text.settings(tour)
+    assert 'alpha 0.05' in line
+    assert 'hierarchy true' in line
+    assert 'None' not in line
 
 
 def test_a_model_that_predicts_names_its_choice(campaign):
