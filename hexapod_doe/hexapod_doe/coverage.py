@@ -10,73 +10,34 @@ prints the tables of docs/statistics.md.
 
 import argparse
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import replace
 
 import numpy as np
-import pandas as pd
 
 from hexapod_doe.analysis import analyse
+from hexapod_doe.attribution import alias_safe
 from hexapod_doe.design import Design, fraction
 from hexapod_doe.findings import Bounds, Estimate
-from hexapod_doe.model import corners, labels
+from hexapod_doe.model import corners, estimable_terms, labels
 from hexapod_doe.options import Options
 from hexapod_doe.prediction import rank_descending
 from hexapod_doe.results import Analysis
 from hexapod_doe.simulated import Truth, repeated_levels, table_of
-
-STATED = 'stated'
-COMPARED = 'for comparison'
-
-
-@dataclass
-class Tally:
-    """Shares of covered targets and outcomes of choices, one value per campaign."""
-
-    coverage: dict[tuple[str, str, float], list[float]] = field(default_factory=dict)
-    """By kind, interval and nominal confidence."""
-    choices: dict[str, list[tuple[float, float]]] = field(default_factory=dict)
-    """Regret and whether it is the best set, by rule."""
-    claims: dict[str, list[tuple[float, float]]] = field(default_factory=dict)
-    """Probability claimed and whether it came true, by claim."""
-
-    def cover(
-        self, kind: str, name: str, level: float, bounds: Sequence[Bounds], target: np.ndarray
-    ) -> None:
-        """Add the share of targets that lie within their bounds; missing bounds don't count."""
-        hits = [
-            low <= value <= high
-            for (low, high), value in zip(bounds, target, strict=True)
-            if low is not None and high is not None
-        ]
-        self.coverage.setdefault((kind, name, level), []).append(float(np.mean(hits)))
-
-    def coverage_table(self) -> pd.DataFrame:
-        """Return mean coverage and its Monte Carlo error by interval."""
-        rows = [
-            (kind, name, level, np.mean(shares), np.std(shares) / np.sqrt(len(shares)))
-            for (kind, name, level), shares in self.coverage.items()
-        ]
-        return pd.DataFrame(rows, columns=['kind', 'interval', 'nominal', 'coverage', 'error'])
-
-    def choice_table(self) -> pd.DataFrame:
-        """Return mean regret and the share of best picks by rule."""
-        rows = [
-            (name, *np.mean(values, axis=0), np.std([v[0] for v in values]) / np.sqrt(len(values)))
-            for name, values in self.choices.items()
-        ]
-        return pd.DataFrame(rows, columns=['rule', 'regret', 'best', 'regret error'])
-
-    def claim_table(self) -> pd.DataFrame:
-        """Return the mean probability claimed and how often the claim was true."""
-        rows = [(name, *np.mean(values, axis=0)) for name, values in self.claims.items()]
-        return pd.DataFrame(rows, columns=['claim', 'claimed', 'true'])
+from hexapod_doe.tally import COMPARED, STATED, Tally
 
 
 class Study:
     """Simulates campaigns of one truth and judges what the analysis says about them."""
 
-    def __init__(self, truth: Truth, design: Design, replicates: int) -> None:
-        """Compute every target of the truth."""
+    def __init__(self, truth: Truth, design: Design, replicates: int, split: bool = False) -> None:
+        """Compute every target of the truth.
+
+        Args:
+            truth: How runs come about.
+            design: The cases.
+            replicates: Runs of each case.
+            split: Judge apart the sets whose prediction no name of an effect changes.
+        """
         self.truth = truth
         self.replicates = replicates
         self.levels = repeated_levels(design, replicates)
@@ -89,6 +50,12 @@ class Study:
             'best_of:3': truth.best_of(self.grid, 3),
         }
         self.trimmed = truth.mean_of_best(self.grid, replicates - 3, replicates)
+        safe = alias_safe(self.levels, estimable_terms(self.levels, 2))
+        self.groups = (
+            {', alias-safe sets': safe, ', other sets': ~safe}
+            if split
+            else {'': np.ones_like(safe)}
+        )
 
     def run(self, repeats: int, seed: int) -> Tally:
         """Simulate and judge some campaigns."""
@@ -106,7 +73,7 @@ class Study:
 
         def cover(name: str, estimates: Mapping[str, Estimate], target: np.ndarray) -> None:
             bounds = [estimates[label].ci for label in self.labels]
-            tally.cover(STATED, name, analysis.level, bounds, target)
+            self._cover(tally, STATED, name, analysis.level, bounds, target)
 
         for result in analysis.estimands:
             cover(f'{result.name} of the runs', result.predictions, self.targets[result.name])
@@ -122,7 +89,7 @@ class Study:
             cover('mean, two-part', parts.expected, self.mean)
             bounds = [parts.run_interval[label] for label in self.labels]
             new_run = self.truth.simulate(self.grid, rng)
-            tally.cover(STATED, 'one new run, two-part', analysis.level, bounds, new_run)
+            self._cover(tally, STATED, 'one new run, two-part', analysis.level, bounds, new_run)
             self._choose(tally, 'two-part', parts.choice)
         self._judge_ranks(tally, analysis)
         self._judge_confirmation(tally, analysis, rng)
@@ -133,7 +100,7 @@ class Study:
         if ranks is None:
             return
         bounds = [ranks.rank_interval[label] for label in self.labels]
-        tally.cover(STATED, 'rank', analysis.level, bounds, rank_descending(self.mean))
+        self._cover(tally, STATED, 'rank', analysis.level, bounds, rank_descending(self.mean))
         best = self.labels[int(self.mean.argmax())]
         tally.claims.setdefault('the choice is the best set', []).append(
             (ranks.p_best[analysis.choice], float(analysis.choice == best))
@@ -169,19 +136,34 @@ class Study:
         self, tally: Tally, whole: Analysis, article: Analysis, rng: np.random.Generator
     ) -> None:
         """Judge the classical intervals, which hold for the selected model and normal errors."""
-        level = whole.level
-        ci = [item.ci for item in whole.predictions]
-        tally.cover(COMPARED, 'mean, final model after elimination', level, ci, self.mean)
-        pi = [item.pi for item in whole.predictions]
-        new_run = self.truth.simulate(self.grid, rng)
-        tally.cover(COMPARED, 'one new run, final model', level, pi, new_run)
-        ci = [item.ci for item in article.predictions]
-        tally.cover(COMPARED, "article's CI, for the mean of all runs", level, ci, self.mean)
+        ci, pi = zip(*((item.ci, item.pi) for item in whole.predictions), strict=True)
+        classical = [item.ci for item in article.predictions]
         best = f'best {self.replicates - 3} of {self.replicates}'
-        name = f"article's CI, for the mean of the {best}"
-        tally.cover(COMPARED, name, level, ci, self.trimmed)
+        for name, bounds, target in (
+            ('mean, final model after elimination', ci, self.mean),
+            ('one new run, final model', pi, self.truth.simulate(self.grid, rng)),
+            ("article's CI, for the mean of all runs", classical, self.mean),
+            (f"article's CI, for the mean of the {best}", classical, self.trimmed),
+        ):
+            self._cover(tally, COMPARED, name, whole.level, bounds, target)
         self._choose(tally, 'final model, all runs', whole.ranking[0])
         self._choose(tally, "article's, worst three dropped", article.ranking[0])
+
+    def _cover(
+        self,
+        tally: Tally,
+        kind: str,
+        name: str,
+        level: float,
+        bounds: Sequence[Bounds],
+        target: np.ndarray,
+    ) -> None:
+        """Tally the intervals of all combinations, by group."""
+        for suffix, inside in self.groups.items():
+            chosen = np.flatnonzero(inside)
+            tally.cover(
+                kind, name + suffix, level, [bounds[int(i)] for i in chosen], target[chosen]
+            )
 
     def _choose(self, tally: Tally, rule: str, label: str) -> None:
         value = self.mean[self.labels.index(label)]
@@ -194,8 +176,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog='coverage', description=__doc__)
     parser.add_argument('--repeats', type=int, default=200, help='campaigns (default 200)')
     parser.add_argument('--seed', type=int, default=1)
+    parser.add_argument(
+        '--aliased', type=float, metavar='FG', help='add an effect FG, confounded with CE, and '
+        'judge apart the sets that it cannot mislead',
+    )  # fmt: skip
     args = parser.parse_args()
-    tally = Study(Truth(), fraction('quarter'), 10).run(args.repeats, args.seed)
+    truth = Truth()
+    if args.aliased is not None:
+        truth = replace(truth, success={**truth.success, 'FG': args.aliased})
+    study = Study(truth, fraction('quarter'), 10, split=args.aliased is not None)
+    tally = study.run(args.repeats, args.seed)
     for frame in (tally.coverage_table(), tally.choice_table(), tally.claim_table()):
         print(frame.to_string(index=False, float_format='{:.3f}'.format))
         print()

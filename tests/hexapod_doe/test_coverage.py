@@ -3,9 +3,10 @@
 
 import numpy as np
 import pytest
-from hexapod_doe.coverage import COMPARED, STATED, Study, Tally
+from hexapod_doe.coverage import Study
 from hexapod_doe.design import fraction
 from hexapod_doe.simulated import Truth
+from hexapod_doe.tally import COMPARED, STATED, Tally
 
 
 def test_a_tally_counts_what_lies_within_its_bounds() -> None:
