@@ -19,10 +19,13 @@ from rclpy.action import CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
 
+from hexapod_agent import checkpoint
 from hexapod_agent.config import AgentConfig
 from hexapod_agent.graph_run import GraphRun
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.observation import ObservationSpec, parse_observations
 from hexapod_agent.peers import Peers
+from hexapod_agent.player import Agent, Player
+from hexapod_agent.policies import trained_policy
 from hexapod_agent.training import Trainer
 
 PARAMETERS = (
@@ -75,10 +78,8 @@ class AgentNode(Node):
         """Run one goal to its end; an error ends the run, not the node."""
         goal = goal_handle.request
         try:
-            spec = ObservationSpec(goal.observations)
-            config = AgentConfig.load(goal.config or self.get_parameter('config').value)
-            trainer = self._make_trainer(spec, config, goal.seed)
-            self._run = GraphRun(self, goal_handle, spec, config, trainer)
+            spec, config, agent = trained(goal) if goal.checkpoint else self._untrained(goal)
+            self._run = GraphRun(self, goal_handle, spec, config, agent)
             return await self._run.execute()
         except Exception as error:
             self._last_error = f'run {goal.run_id}: {error}'
@@ -94,12 +95,35 @@ class AgentNode(Node):
             self._run = None
             self._reserved = False
 
+    def _untrained(self, goal: TrainRun.Goal) -> tuple[ObservationSpec, AgentConfig, Trainer]:
+        spec = ObservationSpec(goal.observations)
+        config = AgentConfig.load(goal.config or self.get_parameter('config').value)
+        return spec, config, self._make_trainer(spec, config, goal.seed)
+
     def _health(self) -> Health:
         if self._run is not None:
             return DiagnosticStatus.OK, 'training', self._run.progress()
         if self._last_error:
             return DiagnosticStatus.ERROR, self._last_error, {}
         return DiagnosticStatus.OK, 'waiting for a run', {}
+
+
+def trained(goal: TrainRun.Goal) -> tuple[ObservationSpec, AgentConfig, Agent]:
+    """Return the agent of the goal's checkpoint, and the configuration that it plays in.
+
+    Raises:
+        ValueError: the checkpoint cannot be read, or observes other channels than the goal says.
+    """
+    trainer = checkpoint.load(goal.checkpoint)
+    spec, config = trainer.spec, trainer.config
+    if goal.observations and parse_observations(goal.observations) != spec.letters:
+        raise ValueError(
+            f"observations '{goal.observations}': checkpoint '{goal.checkpoint}' observes "
+            f"'{spec.letters}', expected the same or none"
+        )
+    if goal.config:
+        config = config.changed_by(goal.config)
+    return spec, config, Player(trained_policy(trainer.agent), config.training.window)
 
 
 def main(args: Sequence[str] | None = None) -> None:

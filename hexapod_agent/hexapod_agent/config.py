@@ -93,14 +93,25 @@ class AgentConfig:
         Raises:
             ConfigError: The file is missing, is not YAML, or holds something unknown.
         """
-        if not path:
-            return cls.from_mapping({}, ARTICLE)
-        if not Path(path).is_file():
-            raise ConfigError(
-                f'config file {str(path)!r} not found, expected a YAML file with sections of '
-                f'{", ".join(field.name for field in fields(cls))}'
-            )
-        return cls.from_mapping(_read(Path(path)), str(path))
+        return cls.from_mapping(_changes(path) if path else {}, str(path or ARTICLE))
+
+    def changed_by(self, path: str | Path) -> 'AgentConfig':
+        """Read a file that changes values of this configuration.
+
+        Raises:
+            ConfigError: As for `load`.
+        """
+        return self.from_mapping(_merged(self.to_mapping(), _changes(path)), str(path))
+
+
+def _changes(path: str | Path) -> Mapping[str, Any]:
+    """Read a file of changes."""
+    if not Path(path).is_file():
+        raise ConfigError(
+            f'config file {str(path)!r} not found, expected a YAML file with sections of '
+            f'{", ".join(field.name for field in fields(AgentConfig))}'
+        )
+    return _read(Path(path))
 
 
 def _read(path: Any) -> Mapping[str, Any]:

@@ -6,7 +6,7 @@
 import argparse
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
@@ -19,7 +19,7 @@ from rich.table import Table
 from hexapod_agent import checkpoint
 from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.env import HexapodLine
-from hexapod_agent.evaluation import Evaluation, run_episode, summarize
+from hexapod_agent.evaluation import Episode, Evaluation, GraphError, run_episode, summarize
 from hexapod_agent.policies import Policy, constant_policy, random_policy, trained_policy
 
 _ROWS = (
@@ -37,17 +37,16 @@ def main(args: Sequence[str] | None = None) -> None:
     """Evaluate what the command line names, and print a table."""
     parser = _parser()
     options = parser.parse_args(args)
+    if options.graph and not options.checkpoint:
+        parser.error('--graph: expected a CHECKPOINT for the graph to play')
     if bool(options.checkpoint) == bool(options.policy):
         parser.error('expected either a CHECKPOINT or --policy')
     try:
-        name, env, policy = _subject(options)
-    except (ConfigError, checkpoint.CheckpointError) as error:
+        name, subject = _subject(options)
+        console = Console()
+        episodes = list(track(subject, name, options.starts, console=console, transient=True))
+    except (ConfigError, checkpoint.CheckpointError, GraphError) as error:
         parser.error(str(error))
-    console = Console()
-    episodes = [
-        run_episode(env, policy, options.seed, start)
-        for start in track(range(options.starts), name, console=console, transient=True)
-    ]
     evaluation = summarize(episodes)
     console.print(_table(name, evaluation))
     if options.json:
@@ -61,21 +60,44 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--config', help='configuration of the baseline; default article.yaml')
     parser.add_argument('--starts', type=int, default=50, help='episodes (default 50)')
     parser.add_argument('--seed', type=int, default=1, help='seed of the starts (default 1)')
+    parser.add_argument(
+        '--graph',
+        action='store_true',
+        help='play through the nodes sim, cpg and agent and their topics, started here in a '
+        'namespace of their own; the figures are the same to the last bit',
+    )
     parser.add_argument('--json', metavar='FILE', help='write the figures to a file as well')
     return parser
 
 
-def _subject(options: argparse.Namespace) -> tuple[str, HexapodLine, Policy]:
-    """Name, environment and policy that the options ask for."""
+def _subject(options: argparse.Namespace) -> tuple[str, Iterator[Episode]]:
+    """Name of what the options ask for, and its episodes."""
     if options.checkpoint:
         trainer = checkpoint.load(options.checkpoint)
         letters = trainer.spec.letters
         name = f'{letters or "no optional channel"}, {trainer.episode} episodes'
-        return name, HexapodLine(letters, trainer.config), trained_policy(trainer.agent)
+        if options.graph:
+            return name, _on_graph(options)
+        env, policy = HexapodLine(letters, trainer.config), trained_policy(trainer.agent)
+        return name, _in_environment(env, policy, options)
     env = HexapodLine('', AgentConfig.load(options.config))
     if options.policy == 'random':
-        return 'random actions', env, random_policy(options.seed)
-    return 'zero action', env, constant_policy(np.zeros(ACTION_SIZE, np.float32))
+        return 'random actions', _in_environment(env, random_policy(options.seed), options)
+    zero = constant_policy(np.zeros(ACTION_SIZE, np.float32))
+    return 'zero action', _in_environment(env, zero, options)
+
+
+def _in_environment(
+    env: HexapodLine, policy: Policy, options: argparse.Namespace
+) -> Iterator[Episode]:
+    return (run_episode(env, policy, options.seed, start) for start in range(options.starts))
+
+
+def _on_graph(options: argparse.Namespace) -> Iterator[Episode]:
+    # Only here: without --graph, evaluating needs no ROS.
+    from hexapod_agent.evaluate_node import episodes_on_graph
+
+    return episodes_on_graph(Path(options.checkpoint), options.starts, options.seed)
 
 
 def _table(name: str, evaluation: Evaluation) -> Table:

@@ -17,6 +17,10 @@ _PERIOD_S = CONTROL_PERIOD_NS * 1e-9
 _LAST_STEPS = 200  # 5 s, in which the offset is judged
 
 
+class GraphError(RuntimeError):
+    """The graph did not play what it was asked to; the text gives the agent's reason."""
+
+
 @dataclass(frozen=True)
 class Episode:
     """One evaluated episode.
@@ -61,25 +65,55 @@ class Evaluation:
     energy_per_metre: float
 
 
+class EpisodeMeter:
+    """Adds up one episode as it happens, in the environment or on the graph."""
+
+    def __init__(self, x: float) -> None:
+        """Begin at the start of an episode, where the robot stands at x [m] of odom."""
+        self._start = self._x = x
+        self._return = 0.0
+        self._power = 0.0
+        self._offsets: list[float] = []
+
+    def add(
+        self,
+        reward: float,
+        offset: float,
+        x: float,
+        torques: NDArray[np.float64],
+        velocities: NDArray[np.float64],
+    ) -> None:
+        """Count one control period by what it earned and by the readings at its end.
+
+        Args:
+            reward: What it earned.
+            offset: Offset from the line, m.
+            x: Position along the line, m.
+            torques: Joint torques (18,), N m.
+            velocities: Joint velocities (18,), rad/s.
+        """
+        self._x = x
+        self._return += reward
+        self._offsets.append(offset)
+        self._power += float(np.abs(torques * velocities).sum())
+
+    def episode(self, fell: bool) -> Episode:
+        """Close the episode."""
+        way, energy = self._x - self._start, self._power * _PERIOD_S
+        return Episode(self._return, np.array(self._offsets), way, energy, fell)
+
+
 def run_episode(env: HexapodLine, policy: Policy, seed: int, episode: int) -> Episode:
     """Let a policy run one episode of an environment."""
     observation, _ = env.reset(seed=seed, options={'episode': episode})
     simulation = env.task.simulation
-    start = float(simulation.position[0])
-    episode_return, power, offsets = 0.0, 0.0, []
+    meter = EpisodeMeter(float(simulation.position[0]))
     while not (env.outcome.terminated or env.outcome.truncated):
         observation, reward, *_ = env.step(policy(observation))
-        episode_return += reward
-        offsets.append(env.task.line_offset)
         joints = read(simulation, ('joint_torques', 'joint_velocities'))
-        power += float(np.abs(joints['joint_torques'] * joints['joint_velocities']).sum())
-    return Episode(
-        episode_return,
-        np.array(offsets),
-        float(simulation.position[0]) - start,
-        power * _PERIOD_S,
-        env.outcome.terminated,
-    )
+        x = float(simulation.position[0])
+        meter.add(reward, env.task.line_offset, x, *joints.values())
+    return meter.episode(env.outcome.terminated)
 
 
 def summarize(episodes: list[Episode]) -> Evaluation:

@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""One training run on the node graph: subscribe, reset, step in lock-step, record."""
+"""One run on the node graph, in training or play: subscribe, reset, step in lock-step, record."""
 
 from __future__ import annotations
 
@@ -30,6 +30,7 @@ from hexapod_agent.config import AgentConfig
 from hexapod_agent.messages import decode, message_class, outcome_from_message
 from hexapod_agent.observation import ACTION_SIZE, CHANNELS, ObservationSpec
 from hexapod_agent.peers import PeerError
+from hexapod_agent.player import Agent
 from hexapod_agent.provenance import provenance
 from hexapod_agent.training import Trainer
 
@@ -53,14 +54,14 @@ class GraphRun:
         goal_handle: ServerGoalHandle,
         spec: ObservationSpec,
         config: AgentConfig,
-        trainer: Trainer,
+        agent: Agent,
     ) -> None:
         self._node = node
         self._goal_handle = goal_handle
         self._goal: TrainRun.Goal = goal_handle.request
         self._spec = spec
         self._config = config
-        self._trainer = trainer
+        self._agent = agent
         self._command = CpgCommand()
         self._episode = 0
         self._action = np.zeros(ACTION_SIZE, dtype=np.float32)
@@ -84,7 +85,7 @@ class GraphRun:
         return {'run_id': self._goal.run_id, 'episode': self._episode, **counts}
 
     async def execute(self) -> TrainRun.Result:
-        """Train every episode of the goal, then close the bag and save the agent."""
+        """Run every episode of the goal, then close the bag and save an agent that has learned."""
         peers, goal = self._node.peers, self._goal
         await peers.configure('sim', 'task', asdict(self._config.task))
         await peers.configure('cpg', 'cpg', asdict(self._config.cpg.hopf))
@@ -97,10 +98,11 @@ class GraphRun:
                 self._goal_handle.canceled()
                 return self._result('canceled')
             await self._run_episode()
-        checkpoint, bag = '', ''
+        checkpoint, bag = goal.checkpoint, ''
         if goal.bag:
-            checkpoint = f'{goal.bag}.pt'
-            save(checkpoint, self._trainer, with_replay=False)
+            if isinstance(self._agent, Trainer):
+                checkpoint = f'{goal.bag}.pt'
+                save(checkpoint, self._agent, with_replay=False)
             bag = await peers.finish_recording(goal.episodes, {'checkpoint': checkpoint})
         self._goal_handle.succeed()
         return self._result('', checkpoint, bag)
@@ -114,7 +116,7 @@ class GraphRun:
             await peers.record_episode(episode, enable=True)
         self._lock_step.stop()
         self._lock_step.counts.reset()
-        self._trainer.begin_episode(episode)
+        self._agent.begin_episode(episode)
         self._action = np.zeros(ACTION_SIZE, dtype=np.float32)
         listeners = self._listeners(sampled)
         await self._until_heard(listeners)
@@ -128,17 +130,17 @@ class GraphRun:
 
     async def _step_until_end(self, stamp_ns: int) -> int:
         """Observe, act and learn once per period; return the stamp of the last one."""
-        trainer = self._trainer
+        agent = self._agent
         while True:
             messages = await self._lock_step.next_period()
             outcome = outcome_from_message(messages[_OUTCOME])
             observation = self._observe(messages)
             if outcome.terminated or outcome.truncated:
-                trainer.end_episode(observation, outcome)
+                agent.end_episode(observation, outcome)
                 return stamp_ns
-            self._action = trainer.observe(observation, outcome)
+            self._action = agent.observe(observation, outcome)
             self._publish_command(stamp_ns)
-            trainer.learn()  # while the pattern generator and the sim are at work
+            agent.learn()  # while the pattern generator and the sim are at work
             stamp_ns += CONTROL_PERIOD_NS
 
     def _observe(self, messages: Mapping[str, Any]) -> NDArray[Any]:
@@ -187,6 +189,7 @@ class GraphRun:
         return given | {
             'observations': self._spec.letters,
             'seed': str(self._goal.seed),
+            'mode': 'play' if self._goal.checkpoint else 'train',
             'episodes': str(self._goal.episodes),
             'window': str(self._config.training.window),
             'config': yaml.safe_dump(self._config.to_mapping(), sort_keys=False),
@@ -196,7 +199,7 @@ class GraphRun:
 
     def _report(self, last_ns: int) -> None:
         """Publish the episode's result and the action's feedback."""
-        summary = self._trainer.summary
+        summary = self._agent.summary
         result = EpisodeResult(
             run_id=self._goal.run_id,
             episode=self._episode,
@@ -226,7 +229,7 @@ class GraphRun:
 
     def _result(self, message: str, checkpoint: str = '', bag: str = '') -> TrainRun.Result:
         return TrainRun.Result(
-            final_average_reward=self._trainer.summary.average_return,
+            final_average_reward=self._agent.summary.average_return,
             episodes=self._episode + 1,
             checkpoint=checkpoint,
             bag=bag,

@@ -4,6 +4,8 @@
 """The figures of an evaluation by hand, and the command line around them."""
 
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -68,3 +70,14 @@ def test_command_line_wants_one_subject(capsys):
     with pytest.raises(SystemExit):
         evaluate.main([])
     assert 'expected either a CHECKPOINT or --policy' in capsys.readouterr().err
+
+
+def test_command_line_plays_no_baseline_on_the_graph(capsys):
+    with pytest.raises(SystemExit):
+        evaluate.main(['--policy', 'zero', '--graph'])
+    assert '--graph: expected a CHECKPOINT' in capsys.readouterr().err
+
+
+def test_evaluating_in_the_environment_needs_no_ros():
+    code = 'import sys, hexapod_agent.evaluate; assert "rclpy" not in sys.modules'
+    subprocess.run([sys.executable, '-c', code], check=True)

@@ -1,0 +1,102 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""A checkpoint played on the graph: the figures of the environment, and its own observations."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from hexapod_agent.agent_node import AgentNode
+from hexapod_agent.config import AgentConfig
+from hexapod_agent.env import HexapodLine
+from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.training import Trainer
+from hexapod_cpg.cpg_node import CpgNode
+from hexapod_interfaces.action import TrainRun
+from hexapod_interfaces.msg import EpisodeResult
+from hexapod_node.subscriptions import subscribed_topics
+from hexapod_sim.sim_node import SimNode
+
+from hexapod_agent import checkpoint, evaluate
+
+pytestmark = pytest.mark.graph
+SMALL = {
+    'task': {'time_limit_steps': 40},
+    'actor': {'hidden': [16, 12]},
+    'critic': {'hidden': [16, 12]},
+}
+
+
+@pytest.fixture
+def path(tmp_path) -> str:
+    """Return an untrained checkpoint of the channels B and C."""
+    trainer = Trainer(ObservationSpec('BC'), AgentConfig.from_mapping(SMALL, 'small'), 5)
+    # Weights large enough that the observation decides the action.
+    trainer.agent.actor_parameters.flat.mul_(4.0)
+    checkpoint.save(tmp_path / 'agent.pt', trainer, with_replay=False)
+    return str(tmp_path / 'agent.pt')
+
+
+def figures(path: str, *options: str) -> dict[str, float]:
+    file = f'{path}.json'
+    evaluate.main([path, '--starts', '3', '--seed', '9', '--json', file, *options])
+    with open(file) as text:
+        return json.load(text)
+
+
+def test_evaluation_on_the_graph_equals_the_environments(path: str) -> None:
+    alone = figures(path)
+    assert alone['speed'] != 0.0
+    assert figures(path, '--graph') == alone
+
+
+def test_playing_subscribes_to_the_checkpoints_channels_and_learns_nothing(
+    graph, path: str
+) -> None:
+    seen: list[set[str]] = []
+    node = graph.nodes[0]
+
+    class Watched(SimNode):
+        def _on_joint_trajectory(self, message) -> None:
+            super()._on_joint_trajectory(message)
+            seen.append(set(subscribed_topics(node, 'agent', '/')))
+
+    graph.add(Watched(), CpgNode(), AgentNode())
+    response = graph.train(TrainRun.Goal(run_id='p', checkpoint=path, seed=9, episodes=1))
+    assert (response.result.message, response.result.checkpoint) == ('', path)
+    assert {'/body/twist', '/imu/data'} < seen[-1]
+    assert '/joint_torques' not in seen[-1]
+    trainer = checkpoint.load(path)
+    env = HexapodLine('BC', trainer.config)
+    played = evaluate.run_episode(env, evaluate.trained_policy(trainer.agent), 9, 0)
+    assert response.result.final_average_reward == played.episode_return
+
+
+def test_a_config_changes_the_checkpoints_own(graph, path: str, tmp_path) -> None:
+    (tmp_path / 'longer.yaml').write_text('task: {time_limit_steps: 50}\n')
+    results = []
+    graph.nodes[0].create_subscription(EpisodeResult, 'episode_result', results.append, 10)
+    graph.add(SimNode(), CpgNode(), AgentNode())
+    goal = TrainRun.Goal(
+        run_id='p', checkpoint=path, episodes=1, config=str(tmp_path / 'longer.yaml')
+    )
+    assert graph.train(goal).result.message == ''
+    graph.until(lambda: bool(results))
+    assert results[0].steps == 50
+
+
+@pytest.mark.parametrize(
+    ('change', 'complaint'),
+    [
+        ({'observations': 'BD'}, "observes 'BC', expected the same or none"),
+        ({'checkpoint': '/no/such.pt'}, "checkpoint '/no/such.pt' not found"),
+    ],
+)
+def test_a_wrong_goal_ends_with_one_clear_error(graph, path, change, complaint: str) -> None:
+    graph.add(AgentNode())
+    goal = TrainRun.Goal(run_id='p', checkpoint=path, episodes=1)
+    for name, value in change.items():
+        setattr(goal, name, value)
+    assert complaint in graph.train(goal).result.message
