@@ -28,7 +28,11 @@ class TaskConfig:
     start_offset: float = 0.5
     """Largest distance from the line at the start [m]; drawn uniformly to either side."""
     line_y: float = 0.0
-    """Where the goal line runs along odom's x axis [m]."""
+    """Where the goal line runs along odom's x axis, or the middle of where it jumps [m]."""
+    line_jump: float = 0.0
+    """Distance of a jumping line from line_y [m]; it begins on the right."""
+    line_period: float = 0.0
+    """Time between two jumps [s]; 0 keeps the line at line_y."""
 
     velocity_weight: float = 1.0
     """Reward per unit of the velocity term."""
@@ -59,6 +63,18 @@ class TaskConfig:
     max_offset: float = 2.0
     """Distance from the line beyond which the robot counts as strayed [m]."""
 
+    def __post_init__(self) -> None:
+        """Refuse a period that no count of control periods makes.
+
+        Raises:
+            ValueError: The line would jump more often than the robot is controlled.
+        """
+        if self.line_period and not self.line_period >= _PERIOD_S:
+            raise ValueError(
+                f'line_period {self.line_period} s: expected 0, or at least the control period '
+                f'of {_PERIOD_S} s'
+            )
+
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
@@ -81,6 +97,17 @@ class Outcome:
 def episode_seed(run_seed: int, episode: int) -> int:
     """Return the seed of one episode (uint64), well mixed from the run's seed and its number."""
     return int(np.random.SeedSequence((run_seed, episode)).generate_state(1, np.uint64)[0])
+
+
+def line_at(step: int, config: TaskConfig) -> float:
+    """Return where the goal line runs after so many control periods [m].
+
+    It is at y0 - d and y0 + d in turn, for round(T / Ts) control periods each.
+    """
+    if not config.line_period:
+        return config.line_y
+    jumps = step // round(config.line_period / _PERIOD_S)
+    return config.line_y + (config.line_jump if jumps % 2 else -config.line_jump)
 
 
 def velocity_term(velocity: float, config: TaskConfig) -> float:
@@ -121,6 +148,9 @@ def failure_cause(
 class LineTask:
     """Walk along the line y = line_y of odom in +x direction, starting beside it.
 
+    The line may jump by the configuration's schedule: the sample at the end of a control period
+    sees it where it is from then on.
+
     Attributes:
         config: Weights, scales and limits.
         simulation: The robot.
@@ -136,7 +166,7 @@ class LineTask:
 
     @property
     def line_y(self) -> float:
-        """Where the goal line runs [m]; may be moved until the next reset puts it back."""
+        """Where the goal line runs [m]; may be moved if nothing else moves it."""
         return self._line_y
 
     @line_y.setter
@@ -153,8 +183,9 @@ class LineTask:
         """Start an episode: the robot stands beside the line, its offset drawn from the seed."""
         limit = self.config.start_offset
         offset = np.random.default_rng(seed).uniform(-limit, limit)
-        self.simulation.reset(self.config.line_y + offset)
-        self.line_y = self.config.line_y
+        line_y = line_at(0, self.config)
+        self.simulation.reset(line_y + offset)
+        self.line_y = line_y
         self._step = 0
         self._x = 0.0
         self._over = False
@@ -178,6 +209,8 @@ class LineTask:
         except SimulationDivergedError:
             return self._diverged(y)
         self._step += 1
+        if self.config.line_period:
+            self.line_y = line_at(self._step, self.config)
         return self._judge()
 
     def _judge(self) -> Outcome:

@@ -19,6 +19,7 @@ from hexapod_sim.task import (
     episode_seed,
     failure_cause,
     height_penalty,
+    line_at,
     orientation_penalty,
     velocity_term,
 )
@@ -153,6 +154,42 @@ def test_reset_puts_the_line_back() -> None:
     assert task.line_y == 0.25
     assert task.line_offset == 0.0
     assert task.simulation.data.mocap_pos[0, 1] == 0.25
+
+
+@pytest.mark.parametrize(
+    ('step', 'line'),
+    [(0, -0.25), (39, -0.25), (40, 0.75), (79, 0.75), (80, -0.25), (120, 0.75)],
+)
+def test_a_jumping_line_stands_on_either_side_in_turn(step: int, line: float) -> None:
+    # 1 s are 40 control periods of 25 ms; 0.25 - 0.5 is on the right.
+    config = TaskConfig(line_y=0.25, line_jump=0.5, line_period=1.0)
+    assert line_at(step, config) == line
+
+
+def test_without_a_period_the_line_stays() -> None:
+    assert line_at(10**6, TaskConfig(line_y=0.25, line_jump=0.5)) == 0.25
+
+
+def test_offset_and_reward_see_the_jump_in_the_same_period() -> None:
+    config = TaskConfig(start_offset=0.0, line_jump=0.5, line_period=0.05)
+    task = LineTask(config)
+    task.reset(0)
+    assert task.line_offset == 0.0
+    lines = []
+    for _ in range(4):
+        outcome = task.advance(NEUTRAL)
+        y = float(task.simulation.position[1])
+        assert task.line_offset == y - task.line_y
+        assert outcome.terms['closeness'] == closeness_term(task.line_offset)
+        lines.append(task.line_y)
+    assert lines == [-0.5, 0.5, 0.5, -0.5]
+    assert task.simulation.data.mocap_pos[0, 1] == -0.5
+
+
+@pytest.mark.parametrize('period', [-1.0, 0.01, math.nan])
+def test_a_line_faster_than_the_control_is_refused(period: float) -> None:
+    with pytest.raises(ValueError, match='expected 0, or at least the control period'):
+        TaskConfig(line_period=period)
 
 
 def test_terms_sum_to_the_reward_and_match_the_pose(task: LineTask) -> None:
