@@ -204,3 +204,4 @@ def _draw_interaction(axes: Axes, corners: pd.DataFrame, term: str) -> None:
         )
     axes.set_xticks([-1, 1], [f'no {first}', f'with {first}'])
     axes.set_xlim(-1.4, 2.1)
+    axes.margins(y=0.12)

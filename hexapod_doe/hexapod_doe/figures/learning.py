@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from hexapod_doe.figures.chart import Chart
 from hexapod_doe.figures.parts import canvas, failed, grid, is_wide, unit_label
@@ -120,7 +121,8 @@ def _draw_case(axes: Axes, data: pd.DataFrame) -> None:
     style = 'o-' if len(mean) <= 10 else '-'
     axes.plot(mean.index, mean, style, color=BLUE, linewidth=1.7, markersize=3)
     axes.tick_params(labelsize=7.5)
-    axes.locator_params(nbins=3)
+    axes.xaxis.set_major_locator(MaxNLocator(3, integer=True))
+    axes.yaxis.set_major_locator(MaxNLocator(3))
 
 
 def _curves_title(curves: pd.DataFrame) -> str:

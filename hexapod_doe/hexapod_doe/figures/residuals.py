@@ -12,11 +12,13 @@ from scipy import stats
 from hexapod_doe.figures.chart import Chart
 from hexapod_doe.figures.parts import canvas
 from hexapod_doe.figures.style import BLUE, INK, MUTED, ORANGE, SURFACE
-from hexapod_doe.formats import count, number, number_fixed
+from hexapod_doe.formats import count, number, number_fixed, probability
 from hexapod_doe.results import Analysis, Step
 
 BINS = 20
 """Bins of the histogram, as in the article."""
+SIGNIFICANT = 0.05
+"""Level of the tests that the titles go by."""
 OUTLIER = 3.0
 """A studentised residual beyond this is flagged."""
 
@@ -43,7 +45,9 @@ def histogram(analysis: Analysis, step: Step) -> Chart:
 
     skew = float(stats.skew(residuals)) if residuals.std() > 0 else 0.0
     side = 'to the left: some runs end far below the rest' if skew < 0 else 'to the right'
-    shape = f'lean {side}' if abs(skew) > 0.5 else 'are symmetric'
+    # Under normality the skewness of n values has a standard deviation of about sqrt(6/n).
+    leans = abs(skew) > 2 * np.sqrt(6 / len(residuals))
+    shape = f'lean {side}' if leans else 'lean to neither side'
     return Chart(
         f'residual_histogram_{step.name}',
         f'Residuals of the {step.name} model {shape} (skewness {number_fixed(skew, 2)})',
@@ -60,7 +64,7 @@ def normal_probability(analysis: Analysis, step: Step) -> Chart:
     share = (np.arange(len(data)) + 0.5) / len(data)
     data = data.assign(quantile=stats.norm.ppf(share))
     spread = data['residual'].std(ddof=0)
-    correlation = data['residual'].corr(data['quantile']) if spread > 0 else np.nan
+    p = float(stats.shapiro(data['residual']).pvalue) if spread > 0 and len(data) > 2 else None
 
     def draw(width: float) -> Figure:
         figure, axes = canvas(width, 2.9)
@@ -74,12 +78,13 @@ def normal_probability(analysis: Analysis, step: Step) -> Chart:
         axes.set_ylabel('share of runs below')
         return figure
 
-    straight = 'close to' if correlation > 0.98 else 'off'
+    normal = p is None or p >= SIGNIFICANT
     return Chart(
         f'normal_probability_{step.name}',
-        f'Residuals of the {step.name} model lie {straight} the normal line',
-        f'Correlation with normal quantiles {number(correlation)}. A bend at the lower left is '
-        'a tail of failed runs.',
+        f'Residuals of the {step.name} model '
+        + ('could be normal' if normal else 'are not normally distributed'),
+        f'Shapiro-Wilk test: p {probability(p)}. On the line they would be normal; a bend at the '
+        'lower left is a tail of failed runs.',
         data,
         draw,
         half=True,
@@ -89,13 +94,17 @@ def normal_probability(analysis: Analysis, step: Step) -> Chart:
 def against_fit(analysis: Analysis, step: Step) -> Chart:
     """Draw residuals against fitted values."""
     data = _rows(analysis, step)
-    rank = stats.spearmanr(data['fitted'], data['residual'].abs()).statistic
-    grows = 'grows' if rank > 0.2 else 'shrinks' if rank < -0.2 else 'does not change much'
     if data['fitted'].nunique() < 2 or data['residual'].abs().max() == 0:
-        grows = 'cannot be judged'
+        grows = 'cannot be judged against the fitted value'
+    else:
+        rank = stats.spearmanr(data['fitted'], data['residual'].abs())
+        trend = 'grows' if rank.statistic > 0 else 'shrinks'
+        grows = (
+            f'{trend if rank.pvalue < SIGNIFICANT else "does not change"} with the fitted value'
+        )
     return _scatter(
         f'residuals_vs_fit_{step.name}',
-        f'The spread of the runs {grows} with the fitted value',
+        f'The spread of the runs {grows}',
         'Orange points are beyond three standard deviations of a run left out of the fit.',
         data,
         'fitted',
@@ -108,7 +117,7 @@ def against_order(analysis: Analysis, step: Step) -> Chart:
     """Draw residuals against the order in which the runs were started."""
     data = _rows(analysis, step).sort_values('run_order', ignore_index=True)
     rank = stats.spearmanr(data['run_order'], data['residual'])
-    drift = rank.pvalue < 0.05
+    drift = rank.pvalue < SIGNIFICANT
     return _scatter(
         f'residuals_vs_order_{step.name}',
         'Residuals drift with the run order' if drift else 'Residuals do not drift with run order',

@@ -83,7 +83,7 @@ def pareto(analysis: Analysis) -> Chart | None:
             axes.annotate(
                 name, (value, 1), (3, -2), ('data', 'axes fraction'), 'offset points', va='bottom'
             )
-        axes.set_xlabel(f'{found.label}: blue raises, orange lowers the response')
+        axes.set_xlabel(f'{found.label}  (blue raises, orange lowers)')
         return figure
 
     return Chart('pareto_effects', _title(found), _caption(found, analysis), found.data, draw)
