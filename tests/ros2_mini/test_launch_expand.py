@@ -76,7 +76,8 @@ def test_group_keeps_its_variables_to_itself_unless_told_otherwise(expand):
 
 
 def test_environment_reaches_the_processes(expand):
-    body = """<set_env name="A" value="1"/><set_env name="B" value="$(env A)2"/><unset_env name="A"/>
+    body = """<set_env name="A" value="1"/><set_env name="B" value="$(env A)2"/>
+    <unset_env name="A"/>
     <executable cmd="true"><env name="C" value="3"/></executable>"""
     assert expand(body).processes[0].environment == {'HOME': '/home/me', 'B': '12', 'C': '3'}
 

@@ -51,7 +51,7 @@ def read_messages(
         try:
             with path.open('rb') as stream:
                 reader = make_reader(stream)
-                for _, channel, message in reader.iter_messages(topics=topics, start_time=start):
+                for _, channel, message in reader.iter_messages(topics=topics, starting_at=start):
                     yield RecordedMessage(channel.topic, message.log_time, message.data)
         except (OSError, McapError) as error:
             raise CommandError(f"cannot read '{path}': {error or type(error).__name__}") from error

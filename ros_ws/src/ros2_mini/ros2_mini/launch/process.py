@@ -7,31 +7,54 @@ import asyncio
 import contextlib
 import os
 import signal
-from asyncio.subprocess import DEVNULL, PIPE, Process
+from asyncio.subprocess import DEVNULL, Process
+from dataclasses import dataclass
 
 from ros2_mini.launch.log import LaunchLog
 from ros2_mini.launch.plan import ProcessSpec
 
-# A process that has exited may leave a child of its own that holds the pipes open: how long to
+# A process that has ended may leave a child of its own that holds the pipes open: how long to
 # wait for the rest of the output [s].
 _DRAIN_TIMEOUT = 0.5
+
+
+@dataclass(frozen=True)
+class _Pipe:
+    """A pipe of our own: asyncio's would make the wait for a process one for its children too."""
+
+    reader: asyncio.StreamReader
+    transport: asyncio.ReadTransport
+    write_end: int
+
+    @classmethod
+    async def open(cls) -> '_Pipe':
+        read_end, write_end = os.pipe()
+        reader = asyncio.StreamReader()
+        transport, _ = await asyncio.get_running_loop().connect_read_pipe(
+            lambda: asyncio.StreamReaderProtocol(reader), os.fdopen(read_end, 'rb')
+        )
+        return cls(reader, transport, write_end)
 
 
 class ManagedProcess:
     """A running process of a launch, in a process group of its own.
 
-    The group keeps a Ctrl-C of the terminal from reaching the process directly: the launch passes
-    on exactly one SIGINT.
+    The group keeps a Ctrl-C of the terminal away, so that the launch passes on exactly one SIGINT;
+    a signal goes to the whole group, as it would from the terminal.
     """
 
-    def __init__(self, spec: ProcessSpec, process: Process, log: LaunchLog) -> None:
+    def __init__(
+        self, spec: ProcessSpec, process: Process, pipes: list[_Pipe], log: LaunchLog
+    ) -> None:
         self.spec = spec
         self._process = process
+        self._pipes = pipes
         self._log = log
-        self._pumps = (
-            asyncio.ensure_future(self._pump(process.stdout, spec.output != 'log')),
-            asyncio.ensure_future(self._pump(process.stderr, True)),
-        )
+        screens = (spec.output != 'log', True)
+        self._pumps = [
+            asyncio.ensure_future(self._pump(pipe.reader, screen))
+            for pipe, screen in zip(pipes, screens, strict=True)
+        ]
 
     @classmethod
     async def start(cls, spec: ProcessSpec, log: LaunchLog) -> 'ManagedProcess':
@@ -41,24 +64,30 @@ class ManagedProcess:
             OSError: If the command cannot be run.
         """
         command = ('/bin/sh', '-c', ' '.join(spec.command)) if spec.shell else spec.command
-        process = await asyncio.create_subprocess_exec(
-            *command,
-            cwd=spec.cwd,
-            env=spec.environment,
-            stdin=DEVNULL,
-            stdout=PIPE,
-            stderr=PIPE,
-            process_group=0,
-        )
+        pipes = [await _Pipe.open(), await _Pipe.open()]
+        try:
+            process = await asyncio.create_subprocess_exec(
+                *command,
+                cwd=spec.cwd,
+                env=spec.environment,
+                stdin=DEVNULL,
+                stdout=pipes[0].write_end,
+                stderr=pipes[1].write_end,
+                process_group=0,
+            )
+        finally:
+            for pipe in pipes:
+                os.close(pipe.write_end)
         log.say('INFO', spec.name, f'process started with pid [{process.pid}]')
-        return cls(spec, process, log)
+        return cls(spec, process, pipes, log)
 
     async def wait(self) -> int:
         """Return the exit status once the process has ended and its output has been written."""
         status = await self._process.wait()
         await asyncio.wait(self._pumps, timeout=_DRAIN_TIMEOUT)
-        for pump in self._pumps:
+        for pipe, pump in zip(self._pipes, self._pumps, strict=True):
             pump.cancel()
+            pipe.transport.close()
         pid = self._process.pid
         if status == 0:
             self._log.say('INFO', self.spec.name, f'process has finished cleanly [pid {pid}]')
@@ -96,16 +125,12 @@ class ManagedProcess:
         name = self.spec.name
         self._log.say('INFO', name, f"sending signal '{number.name}' to process[{name}]")
         with contextlib.suppress(ProcessLookupError):
-            if number == signal.SIGKILL:
-                os.killpg(self._process.pid, number)
-            else:
-                self._process.send_signal(number)
+            os.killpg(self._process.pid, number)
 
-    async def _pump(self, stream: asyncio.StreamReader | None, screen: bool) -> None:
+    async def _pump(self, reader: asyncio.StreamReader, screen: bool) -> None:
         """Write what comes out of a pipe, a line at a time, the unfinished last line included."""
-        assert stream is not None  # both are pipes
         rest = b''
-        while chunk := await stream.read(65536):
+        while chunk := await reader.read(65536):
             *lines, rest = (rest + chunk).split(b'\n')
             for line in lines:
                 self._write(line, screen)

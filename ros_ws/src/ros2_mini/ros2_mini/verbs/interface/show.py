@@ -68,7 +68,7 @@ def _without_comment(text: str, spec: MessageSpecification) -> str:
         return ''
     for part in (*spec.fields, *spec.constants):
         for comment in part.annotations['comment']:
-            return text[: text.find(comment) - 1].strip()
+            return text[: text.find(comment)].rstrip(' #')
     return text
 
 

@@ -1,0 +1,159 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+import os
+import time
+from pathlib import Path
+
+import pytest
+import yaml
+from mcap.writer import Writer
+from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
+from rclpy.serialization import serialize_message
+from ros2_mini.bag.messages import read_messages
+from ros2_mini.bag.metadata import Topic, read_metadata
+from ros2_mini.bag.offers import replay_profile
+from ros2_mini.cli import main
+from ros2_mini.errors import CommandError
+from std_msgs.msg import String
+
+START = 1_700_000_000_000_000_000
+PERIOD = 100_000_000
+COUNT = 12
+
+
+def make_bag(directory: Path, **changes) -> Path:
+    """Write a bag of strings on two topics in turn, one every 0.1 s."""
+    directory.mkdir()
+    with (directory / 'x_0.mcap').open('wb') as stream:
+        writer = Writer(stream)
+        writer.start(profile='ros2')
+        schema = writer.register_schema('std_msgs/msg/String', 'ros2msg', b'string data')
+        channels = [writer.register_channel(topic, 'cdr', schema) for topic in ('/a', '/b')]
+        for i in range(COUNT):
+            data = serialize_message(String(data=str(i)))
+            time_ns = START + i * PERIOD
+            writer.add_message(channels[i % 2], time_ns, data, time_ns)
+        writer.finish()
+    topics = [
+        {
+            'topic_metadata': {
+                'name': name,
+                'type': 'std_msgs/msg/String',
+                'serialization_format': 'cdr',
+                'offered_qos_profiles': [],
+            },
+            'message_count': COUNT // 2,
+        }
+        for name in ('/a', '/b')
+    ]
+    information = {
+        'version': 9,
+        'storage_identifier': 'mcap',
+        'duration': {'nanoseconds': (COUNT - 1) * PERIOD},
+        'starting_time': {'nanoseconds_since_epoch': START},
+        'message_count': COUNT,
+        'topics_with_message_count': topics,
+        'compression_mode': '',
+        'relative_file_paths': ['x_0.mcap'],
+        'ros_distro': 'jazzy',
+    }
+    content = {'rosbag2_bagfile_information': information | changes}
+    (directory / 'metadata.yaml').write_text(yaml.safe_dump(content))
+    return directory
+
+
+@pytest.fixture
+def bag(tmp_path: Path) -> Path:
+    return make_bag(tmp_path / 'bag')
+
+
+# The layout is that of rosbag2_py 0.26.5 (format_bag_metadata.cpp).
+SUMMARY = """
+Files:             x_0.mcap
+Bag size:          {size}
+Storage id:        mcap
+ROS Distro:        jazzy
+Duration:          1.100000000s
+Start:             Nov 14 2023 22:13:20.000000000 (1700000000.000000000)
+End:               Nov 14 2023 22:13:21.100000000 (1700000001.100000000)
+Messages:          12
+Topic information: Topic: /a | Type: std_msgs/msg/String | Count: 6 | Serialization Format: cdr
+                   Topic: /b | Type: std_msgs/msg/String | Count: 6 | Serialization Format: cdr
+Service:           0
+Service information: 
+"""  # noqa: W291
+
+
+def test_info(bag, capsys, monkeypatch):
+    monkeypatch.setenv('TZ', 'UTC')
+    time.tzset()
+    assert main(['bag', 'info', str(bag)]) == 0
+    size = sum(os.path.getsize(path) for path in bag.iterdir()) / 1024
+    assert capsys.readouterr().out == SUMMARY.format(size=f'{size:.1f} KiB')
+
+
+def test_info_of_topic_names(bag, capsys):
+    assert main(['bag', 'info', '-t', str(bag)]) == 0
+    assert capsys.readouterr().out == '/a\n/b\n'
+
+
+def test_messages_come_in_order_from_a_time_on(bag):
+    metadata = read_metadata(bag)
+    everything = list(read_messages(metadata, ['/a', '/b'], START))
+    assert [message.time for message in everything] == [START + i * PERIOD for i in range(COUNT)]
+    late = list(read_messages(metadata, ['/b'], START + 8 * PERIOD))
+    assert [(one.topic, one.time) for one in late] == [
+        ('/b', START + 9 * PERIOD), ('/b', START + 11 * PERIOD),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ('changes', 'message'),
+    [
+        ({'storage_identifier': 'sqlite3'}, "has the storage 'sqlite3'; supported: mcap"),
+        ({'compression_mode': 'FILE'}, "is compressed by 'FILE'; supported"),
+        ({'relative_file_paths': ['y.mcap']}, "cannot read '.*y.mcap'"),
+        ({'relative_file_paths': ['metadata.yaml']}, "cannot read '.*metadata.yaml'"),
+    ],
+)
+def test_bag_that_cannot_be_read(changes, message, tmp_path):
+    metadata = read_metadata(make_bag(tmp_path / 'bag', **changes))
+    with pytest.raises(CommandError, match=message):
+        list(read_messages(metadata, ['/a'], START))
+
+
+def test_metadata_that_is_missing_or_broken(tmp_path, capsys):
+    assert main(['bag', 'info', str(tmp_path / 'none')]) == 1
+    assert capsys.readouterr().err == f"Bag path '{tmp_path}/none' does not exist!\n"
+    with pytest.raises(CommandError, match=r'is no bag: it has no readable metadata\.yaml'):
+        read_metadata(tmp_path)
+    (tmp_path / 'metadata.yaml').write_text('rosbag2_bagfile_information: {}')
+    with pytest.raises(CommandError, match="lacks 'relative_file_paths'"):
+        read_metadata(tmp_path)
+
+
+def test_unknown_topic_is_named(bag, capsys):
+    assert main(['bag', 'play', str(bag), '--topics', '/c']) == 1
+    assert capsys.readouterr().err == f"bag '{bag}' has no topic '/c'; it has: /a, /b\n"
+
+
+def offer(reliability: object, durability: object) -> dict[str, object]:
+    return {'depth': 3, 'reliability': reliability, 'durability': durability}
+
+
+@pytest.mark.parametrize(
+    ('offers', 'reliable', 'latched', 'depth'),
+    [
+        ([], True, False, 10),
+        ([offer('reliable', 'volatile')], True, False, 3),
+        ([offer('reliable', 'transient_local'), offer('reliable', 'volatile')], True, False, 3),
+        ([offer('best_effort', 'volatile')], False, False, 3),
+        ([offer(1, 1)], True, True, 3),  # by number, as up to version 8 of the format
+    ],
+)
+def test_topic_is_published_as_it_was(offers, reliable, latched, depth):
+    profile = replay_profile(Topic('/a', 'std_msgs/msg/String', 'cdr', 1, offers))
+    assert (profile.reliability == ReliabilityPolicy.RELIABLE) == reliable
+    assert (profile.durability == DurabilityPolicy.TRANSIENT_LOCAL) == latched
+    assert profile.depth == depth
