@@ -29,7 +29,8 @@ class Failures:
 
 def model_failures(table: RunTable, options: Options, rng: np.random.Generator) -> Failures | None:
     """Model the failures; None if no run failed by the rule, or too few to be modelled."""
-    threshold = failure_threshold(table.values, options.failure_threshold)
+    case = table.rows['case'].to_numpy()
+    threshold = failure_threshold(table.values, case, options.failure_threshold)
     if threshold is None:
         return None
     stated = fit_parts(table, threshold.value)

@@ -180,8 +180,9 @@ def main() -> None:
         '--aliased', type=float, metavar='FG', help='add an effect FG, confounded with CE, and '
         'judge apart the sets that it cannot mislead',
     )  # fmt: skip
+    parser.add_argument('--no-failures', action='store_true', help='every run succeeds')
     args = parser.parse_args()
-    truth = Truth()
+    truth = replace(Truth(), failure={'1': -50.0}) if args.no_failures else Truth()
     if args.aliased is not None:
         truth = replace(truth, success={**truth.success, 'FG': args.aliased})
     study = Study(truth, fraction('quarter'), 10, split=args.aliased is not None)

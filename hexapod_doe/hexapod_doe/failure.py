@@ -5,7 +5,8 @@
 
 Failed runs are a population of their own, apart from the successes by a gap in the distribution
 of the response. The rule looks for that gap in a kernel density, so that a few runs between the
-two populations don't hide it.
+two populations don't hide it. A strong factor parts the runs too, but by whole cases; failures
+strike runs of a case whose other runs succeed.
 """
 
 from dataclasses import dataclass
@@ -18,6 +19,8 @@ MAX_VALLEY = 0.5
 MAX_SHARE = 0.5
 """More than this share of failures is not a minority that failed."""
 MIN_FAILURES = 3
+MIN_MIXED = 0.5
+"""At least this share of the failures must be in cases that have a success too."""
 _GRID = 512
 
 
@@ -29,7 +32,9 @@ class Threshold:
     rule: str
 
 
-def failure_threshold(response: np.ndarray, fixed: float | None = None) -> Threshold | None:
+def failure_threshold(
+    response: np.ndarray, case: np.ndarray, fixed: float | None = None
+) -> Threshold | None:
     """Return the threshold of failure, or None where the runs show no gap.
 
     The density is a Gaussian kernel estimate with Silverman's bandwidth
@@ -38,6 +43,7 @@ def failure_threshold(response: np.ndarray, fixed: float | None = None) -> Thres
 
     Args:
         response: Response of all runs (n,).
+        case: Case of each run (n,); single runs of a case can't show the gap.
         fixed: Threshold that the user fixed, used as it is.
     """
     if fixed is not None:
@@ -48,12 +54,16 @@ def failure_threshold(response: np.ndarray, fixed: float | None = None) -> Thres
     valley = _valley(response, 0.9 * spread * len(response) ** -0.2)
     if valley is None:
         return None
-    failures = int((response < valley).sum())
-    if not MIN_FAILURES <= failures <= MAX_SHARE * len(response):
+    failed = response < valley
+    if not MIN_FAILURES <= failed.sum() <= MAX_SHARE * len(response):
+        return None
+    mixed = np.isin(case, case[~failed])
+    if mixed[failed].mean() < MIN_MIXED:
         return None
     rule = (
         'valley of the kernel density of all runs below its main mode, at most '
-        f'{MAX_VALLEY:g} of the peak below it'
+        f'{MAX_VALLEY:g} of the peak below it, and {MIN_MIXED:.0%} of the failures or more in '
+        'cases that have a success'
     )
     return Threshold(valley, rule)
 

@@ -188,4 +188,4 @@ def _eliminate(state: Pipeline) -> None:
             f'No term is significant at {options.alpha:g}: all combinations are predicted alike '
             'and their order says nothing.'
         )
-    state.fit('final', f'terms with p ≤ {options.alpha:g}, parents kept', kept)
+    state.fit('final', f'terms with p ≤ {options.alpha:g}, and parents of the named ones', kept)
