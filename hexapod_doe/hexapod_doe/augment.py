@@ -76,7 +76,7 @@ def d_optimal(
         levels: The cases that have been run. Shape: (cases, factors).
         factors: The letters of the columns.
         extra: How many cases to add.
-        terms: The model without its constant; main effects and two-factor interactions if None.
+        terms: The model without its constant; all terms to order 2 if None.
         seed: Seed of the random starts.
         starts: How many starts the best result is chosen from.
 
@@ -94,13 +94,14 @@ def d_optimal(
     fixed = model_matrix(levels, factors, model)
     base = fixed.T @ fixed + _RIDGE * np.eye(len(model))
     rng = np.random.default_rng(seed)
-    best_value, best = -np.inf, np.array([], dtype=int)
-    for _ in range(starts):
-        chosen = _exchange(base, rows, rng.integers(len(rows), size=extra))
-        value = np.linalg.slogdet(base + rows[chosen].T @ rows[chosen])[1]
-        if value > best_value + 1e-9:
-            best_value, best = value, np.sort(chosen)
-    return candidates[best]
+    tries = [
+        np.sort(_exchange(base, rows, rng.integers(len(rows), size=extra))) for _ in range(starts)
+    ]
+    # Rounded, so that the first of several equally good designs is taken on every machine.
+    values = [
+        round(np.linalg.slogdet(base + rows[chosen].T @ rows[chosen])[1], 6) for chosen in tries
+    ]
+    return candidates[tries[int(np.argmax(values))]]
 
 
 def aimed_model(levels: np.ndarray, factors: str, separate: Sequence[str]) -> list[str]:

@@ -88,8 +88,14 @@ def simulate_power(
         raise ValueError(f'{runs} runs, {parameters} parameters: expected more runs')
     y = _draw(effect / 2 * X[:, 1], model, repeats, np.random.default_rng(seed))
     significant = np.abs(_t_values(X, y)) > t_distribution.isf(alpha / 2, runs - parameters)
-    share = float(significant[:, 1].mean())
-    others = significant[:, 2:]
+    return _summary(significant[:, 1:])
+
+
+def _summary(significant: np.ndarray) -> SimulatedPower:
+    """Count the significant tests, (repeats, terms), of which the first has something to find."""
+    repeats = len(significant)
+    share = float(significant[:, 0].mean())
+    others = significant[:, 1:]
     return SimulatedPower(
         power=share,
         power_se=float(np.sqrt(share * (1 - share) / repeats)),

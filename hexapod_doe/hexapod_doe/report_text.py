@@ -202,11 +202,11 @@ def _model(analysis: Analysis) -> str:
 
 
 def _alias_warning(analysis: Analysis) -> str:
-    mixed = [
-        analysis.final.aliases[term]
-        for term in analysis.final.terms
-        if ' ' in analysis.final.aliases.get(term, '')
-    ]
+    named = (
+        analysis.final.terms if analysis.attribution is None else analysis.attribution.ambiguous
+    )
+    texts = (analysis.design.aliases.get(term, term) for term in named)
+    mixed = [text for text in texts if ' ' in text]
     text = (
         f'{analysis.choice} depends on which name a confounded sum is given '
         f'({listing(mixed, 3)}): more cases can separate them (plan augment).'

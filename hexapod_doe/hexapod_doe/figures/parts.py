@@ -32,8 +32,7 @@ def grid(
 ) -> tuple[Figure, list[Axes]]:
     """Return a figure of small panels, row by row, that share their vertical axis.
 
-    All lengths are in inches. The margins are fixed, because a layout that measures dozens of
-    panels takes seconds.
+    Lengths are in inches. Margins are fixed: to measure dozens of panels takes seconds.
 
     Args:
         width: Width of the figure.

@@ -71,6 +71,15 @@ def test_a_model_without_terms_sees_no_difference(tour):
     assert predictions.ranked_predictions(blank).title == 'All sets are predicted alike'
 
 
+def test_an_ambiguous_winner_is_called_one(campaign):
+    assert campaign.attribution.ambiguous
+    unsafe = replace(campaign.attribution, safe=(), winners={'ABCDE': 2, 'BCDE': 1})
+    sentences = text.sureness(replace(campaign, attribution=unsafe))
+    warning = next(s for s in sentences if 'confounded sum' in s)
+    assert ' + ' in warning
+    assert 'ABCDE in 2 of 3 and BCDE in 1 of 3' in warning
+
+
 def test_the_foot_names_the_options_that_were_set(tour):
     line = text.settings(tour)
     assert 'alpha 0.05' in line
