@@ -6,9 +6,11 @@
 import numpy as np
 import pytest
 import torch
+from hexapod_agent.config import AgentConfig
 from hexapod_agent.env import HexapodLine
+from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.train import train_episode
-from hexapod_agent.training import TrainingDivergedError
+from hexapod_agent.training import Trainer, TrainingDivergedError
 from hexapod_sim.task import Outcome
 
 
@@ -62,6 +64,18 @@ def test_actions_are_within_bounds_and_noisy(make_trainer):
     assert first.dtype == np.float32
     assert np.abs(second).max() <= 1.0
     assert not np.array_equal(first, second)
+
+
+def test_reward_is_scaled_for_the_critic_and_not_for_the_report(small_config):
+    changes = small_config.to_mapping() | {'ddpg': {'reward_scale': 0.5, 'batch_size': 16}}
+    config = AgentConfig.from_mapping(changes, 'a test')
+    trainer = Trainer(ObservationSpec('BC'), config, 1)
+    play(trainer, [2.0] * 20)
+    trainer.begin_episode(1)
+    trainer.observe(observation(trainer), outcome(0))
+    trainer.learn()
+    assert trainer.agent.batch.reward.eq(1.0).all()
+    assert trainer.summary.episode_return == 40.0
 
 
 def test_episodes_come_in_order(make_trainer):

@@ -1,0 +1,35 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""A short training with the default configuration already steers; minutes, so run on demand."""
+
+import numpy as np
+import pytest
+from hexapod_agent.config import AgentConfig
+from hexapod_agent.env import HexapodLine
+from hexapod_agent.evaluation import Evaluation, run_episode, summarize
+from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.policies import Policy, constant_policy, trained_policy
+from hexapod_agent.train import train_episode
+from hexapod_agent.training import Trainer
+
+EPISODES, STARTS = 60, 10
+
+
+def evaluate(env: HexapodLine, policy: Policy) -> Evaluation:
+    return summarize([run_episode(env, policy, 777, start) for start in range(STARTS)])
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(3600)
+def test_short_training_steers_and_the_constant_action_does_not():
+    config = AgentConfig.load()
+    env = HexapodLine('ABCDE', config)
+    trainer = Trainer(ObservationSpec('ABCDE'), config, seed=1)
+    summaries = [train_episode(env, trainer) for _ in range(EPISODES)]
+    learned = evaluate(env, trained_policy(trainer.agent))
+    constant = evaluate(env, constant_policy(np.zeros(30, np.float32)))
+    assert learned.mean_offset < 0.5 * constant.mean_offset
+    assert learned.final_average_reward > constant.final_average_reward
+    assert learned.falls == 0
+    assert np.mean([summary.saturated_share for summary in summaries[-10:]]) < 0.1
