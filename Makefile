@@ -23,8 +23,9 @@ setup: ros_ws/install/.ready  ## make the virtual environment and build the work
 $(VENV)/.ready: requirements.txt requirements-ros.txt requirements-dev.txt constraints.txt
 	@python=$$(.ci/prerequisites) && "$$python" -m venv $(VENV)
 	@echo 'Installing the libraries and ROS 2 into $(VENV) ...'
-	@$(VENV)/bin/python -m pip install --quiet --disable-pip-version-check --progress-bar on \
-		-r requirements.txt -r requirements-ros.txt -r requirements-dev.txt -c constraints.txt
+	@$(VENV)/bin/python -m pip install --disable-pip-version-check --progress-bar off \
+		-r requirements.txt -r requirements-ros.txt -r requirements-dev.txt -c constraints.txt \
+		| awk '/^Collecting/ { if (++n % 20 == 0) print "  " n " packages: " $$2 } /^Installing/ { print "  unpacking" } { fflush() }'
 	@touch $@
 
 ros_ws/install/.ready: $(VENV)/.ready $(INTERFACES) $(INSTALLED)
