@@ -23,8 +23,11 @@ setup(
     entry_points={
         'console_scripts': [
             'agent_node = hexapod_agent.agent_node:main',
+            'play_node = hexapod_agent.play_node:main',
             'train = hexapod_agent.train:main',
             'evaluate = hexapod_agent.evaluate:main',
+            'export = hexapod_agent.export:main',
+            'film = hexapod_agent.film:main',
         ],
     },
 )

@@ -27,6 +27,7 @@ setup(
             'player_node = hexapod_doe.player_node:main',
             'plan = hexapod_doe.plan:main',
             'analyze = hexapod_doe.analyze:main',
+            'follow_report = hexapod_doe.follow_report:main',
             'campaign_status = hexapod_doe.campaign_status:main',
         ],
     },

@@ -16,7 +16,7 @@ from hexapod_interfaces.srv import (
     ResetEpisode,
     StartRecording,
 )
-from hexapod_node.calls import call
+from hexapod_node.calls import ServiceUnavailableError, call
 from hexapod_node.coroutines import sleep
 from hexapod_node.parameters import to_messages
 from hexapod_node.stamps import time_message, to_nanoseconds
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 _RETRY_S = 0.02
+_ANSWER_S = 1.0
 
 
 class PeerError(RuntimeError):
@@ -38,22 +39,24 @@ class Peers:
     def __init__(self, node: Node, timeout_s: float) -> None:
         self._node = node
         self._timeout_s = timeout_s
-        self._configure = {
-            peer: node.create_client(SetParametersAtomically, f'{peer}/set_parameters_atomically')
-            for peer in ('sim', 'cpg')
-        }
         self._reset = {
             peer: node.create_client(ResetEpisode, f'{peer}/reset') for peer in ('sim', 'cpg')
         }
         self._start = node.create_client(StartRecording, 'recorder/start')
         self._episode = node.create_client(RecordEpisode, 'recorder/episode')
         self._finish = node.create_client(FinishRecording, 'recorder/finish')
+        # The last clients, and the first to be used: peers get to know an agent's clients in the
+        # order of their making, so one answer from a peer tells that its other answers arrive.
+        self._configure = {
+            peer: node.create_client(SetParametersAtomically, f'{peer}/set_parameters_atomically')
+            for peer in ('sim', 'cpg', 'recorder')
+        }
 
     async def configure(self, peer: str, prefix: str, config: Mapping[str, Any]) -> None:
-        """Give `sim` or `cpg` the configuration of the run, as its parameters."""
+        """Give a peer the configuration of the run, as its parameters; none just greets it."""
         request = SetParametersAtomically.Request(parameters=to_messages(prefix, config))
         client = self._configure[peer]
-        response = await call(self._node, client, request, self._timeout_s)
+        response = await self._repeat_until_answered(client, request)
         if not response.result.successful:
             raise PeerError(f'{client.service_name}: {response.result.reason}')
 
@@ -99,6 +102,20 @@ class Peers:
             if time.monotonic() > deadline:
                 raise PeerError(f'{self._reset[peer].service_name}: {response.message}')
             await sleep(self._node, _RETRY_S)
+
+    async def _repeat_until_answered(self, client: Any, request: Any) -> Any:
+        """Ask again where a server has just appeared and its answer found no way back yet."""
+        deadline = time.monotonic() + self._timeout_s
+        while True:
+            left = deadline - time.monotonic()
+            try:
+                return await call(self._node, client, request, min(_ANSWER_S, left))
+            except ServiceUnavailableError as error:
+                if left < _ANSWER_S:
+                    raise PeerError(
+                        f'{client.service_name}: no answer after {self._timeout_s:g} s, expected '
+                        f'a running node'
+                    ) from error
 
     async def _ask(self, client: Any, request: Any) -> Any:
         response = await call(self._node, client, request, self._timeout_s)

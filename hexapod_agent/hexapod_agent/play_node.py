@@ -1,0 +1,98 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Node `play`: has the worker of its namespace play a checkpoint, then ends."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from hexapod_interfaces.action import TrainRun
+from hexapod_node.conditions import until_true
+from hexapod_node.coroutines import start, until
+from hexapod_node.parameters import Parameter, declare
+from hexapod_node.spin import run
+from rclpy.action import ActionClient
+from rclpy.node import Node
+from rclpy.task import Future
+
+PARAMETERS = (
+    Parameter('checkpoint', '', 'agent to play: a file of train'),
+    Parameter('config', '', "file of changes to the checkpoint's configuration; empty for none"),
+    Parameter('episodes', 1, 'how many episodes', range=(1, 1_000_000)),
+    Parameter('seed', 1, 'seed of the starts', range=(0, 2**63 - 1)),
+    Parameter('bag', '', 'directory of the bag to record; empty to record nothing'),
+    Parameter(
+        'worker_timeout', 30.0, 'longest wait for the worker', unit='s', range=(1.0, 86400.0)
+    ),
+)
+
+
+class PlayNode(Node):
+    """Sends one goal of the action `train_run` and reports how it ended.
+
+    Attributes:
+        exit_status: of the process, once the run is over: 0 if it was played to its end.
+    """
+
+    def __init__(self) -> None:
+        super().__init__('play')
+        declare(self, PARAMETERS)
+        self.exit_status: int | None = None
+        goal = self._goal()
+        self._client = ActionClient(self, TrainRun, 'train_run')
+        start(self._play(goal)).add_done_callback(self._on_played)
+
+    def _goal(self) -> TrainRun.Goal:
+        value = {entry.name: self.get_parameter(entry.name).value for entry in PARAMETERS}
+        if not value['checkpoint']:
+            raise ValueError("checkpoint '': expected a file of train")
+        return TrainRun.Goal(
+            run_id=Path(value['bag']).name or 'play',
+            checkpoint=_absolute(value['checkpoint']),
+            config=_absolute(value['config']),
+            seed=value['seed'],
+            episodes=value['episodes'],
+            bag=_absolute(value['bag']),
+            record_every=1,
+        )
+
+    async def _play(self, goal: TrainRun.Goal) -> TrainRun.Result:
+        """Wait for the worker, send the goal and return its result.
+
+        Raises:
+            RuntimeError: there is no worker, it is busy, or it ended the run early.
+        """
+        timeout_s = self.get_parameter('worker_timeout').value
+        if not await until_true(self, self._client.server_is_ready, timeout_s):
+            name = self.resolve_topic_name('train_run')
+            raise RuntimeError(f'no worker offers {name} after {timeout_s:g} s, expected one')
+        handle = await until(self._client.send_goal_async(goal))
+        if not handle.accepted:
+            raise RuntimeError('the worker is busy, expected it to be free')
+        result = (await until(handle.get_result_async())).result
+        if result.message:
+            raise RuntimeError(result.message)
+        return result
+
+    def _on_played(self, played: Future) -> None:
+        error = played.exception()
+        if error is not None:
+            self.get_logger().error(str(error))
+            self.exit_status = 1
+            return
+        result = played.result()
+        bag = f', bag {result.bag}' if result.bag else ''
+        self.get_logger().info(f'mean return {result.final_average_reward:.1f}{bag}')
+        self.exit_status = 0
+
+
+def _absolute(path: str) -> str:
+    """Return the path as the worker understands it, wherever it runs; nothing stays nothing."""
+    return str(Path(path).resolve()) if path else ''
+
+
+def main(args: Sequence[str] | None = None) -> None:
+    """Run the node until its run is over or a signal comes."""
+    run(PlayNode, args)

@@ -1,0 +1,53 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""A checkpoint follows a jumping line: one launch, its bag and the report of it."""
+
+from __future__ import annotations
+
+import pytest
+from hexapod_agent.config import AgentConfig
+from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.training import Trainer
+from hexapod_doe.bag import read_run
+from hexapod_doe.follow import read_track
+
+from hexapod_agent import checkpoint
+
+pytestmark = pytest.mark.system
+LAUNCH = 'ros2 launch hexapod_bringup follow.launch.xml'
+
+
+@pytest.fixture
+def ready(shell):
+    """Write an untrained checkpoint, and a line that jumps after one second and after two."""
+    config = AgentConfig.from_mapping({'actor': {'hidden': [8, 8]}}, 'test')
+    trainer = Trainer(ObservationSpec('C'), config, 3)
+    checkpoint.save(shell.directory / 'agent.pt', trainer, with_replay=False)
+    (shell.directory / 'jumps.yaml').write_text(
+        'task: {time_limit_steps: 100, line_jump: 0.3, line_period: 1.0, start_offset: 0.0}\n'
+    )
+    return shell
+
+
+@pytest.mark.parametrize('composed', ['true', 'false'])
+def test_launch_records_and_reports(ready, composed: str) -> None:
+    line = f'{LAUNCH} checkpoint:=agent.pt config:=jumps.yaml bag:=bag composed:={composed}'
+    ended = ready.run(line)
+    assert ended.returncode == 0, ended.stdout + ended.stderr
+    bag = ready.directory / 'bag'
+    assert read_run(bag).metadata['mode'] == 'play'
+    track = read_track(bag)
+    assert track.time.size == 101
+    assert track.line[[0, 39, 40, 79, 80]] == pytest.approx([-0.3, -0.3, 0.3, 0.3, -0.3])
+    report = ready.run('ros2 run hexapod_doe follow_report bag --out follow.svg')
+    assert report.returncode == 0, report.stderr
+    assert '+0.60' in report.stdout
+    assert (ready.directory / 'follow.svg').is_file()
+
+
+def test_a_missing_checkpoint_ends_the_launch(ready) -> None:
+    ended = ready.run(f'{LAUNCH} checkpoint:=none.pt bag:=bag')
+    assert ended.returncode != 0
+    assert 'none.pt' in ended.stdout + ended.stderr
+    assert not (ready.directory / 'bag').exists()
