@@ -19,7 +19,7 @@ from hexapod_doe.options import Options
 from hexapod_doe.outlook import final_outlook
 from hexapod_doe.pipeline import Pipeline, run
 from hexapod_doe.prediction import predict_all
-from hexapod_doe.regression import curvature
+from hexapod_doe.pure_error import curvature
 from hexapod_doe.results import Analysis
 from hexapod_doe.steps import aliases_of, main_effects, removals, step_record
 from hexapod_doe.table import RESPONSE, RunTable, TableError

@@ -5,9 +5,14 @@
 
 from collections.abc import Mapping
 
+import numpy as np
+import pandas as pd
+
+from hexapod_doe.aliases import defining_relation, defining_words, resolution
 from hexapod_doe.findings import TwoPart
+from hexapod_doe.model import corners, labels
 from hexapod_doe.results import Analysis, DesignSummary
-from hexapod_doe.table import RunTable, describe_words, missing_cases
+from hexapod_doe.table import RunTable
 
 _MISSING_SHARE = 0.25
 """With more of a fraction missing than this the design was never meant to be that fraction."""
@@ -19,7 +24,7 @@ _NAMED = 5
 def summarise(table: RunTable, aliases: Mapping[str, str]) -> DesignSummary:
     """Describe the design that the rows of a table show."""
     missing, expected = missing_cases(table.levels)
-    relation, resolution = describe_words(table.levels)
+    relation, length = describe_words(table.levels)
     centre = table.levels.eq(0).all(axis=1)
     runs = table.rows[~centre].groupby('case').size()
     regular = len(missing) <= _MISSING_SHARE * expected
@@ -28,7 +33,7 @@ def summarise(table: RunTable, aliases: Mapping[str, str]) -> DesignSummary:
         factors=table.factors,
         factor_names=table.factor_names,
         defining_relation=relation,
-        resolution=resolution,
+        resolution=length,
         cases=len(runs),
         expected_cases=expected if regular else len(runs),
         missing_cases=missing if regular else (),
@@ -104,3 +109,28 @@ def failure_caveat(record: TwoPart) -> str:
             'other cases.'
         )
     return text
+
+
+def missing_cases(levels: pd.DataFrame) -> tuple[tuple[str, ...], int]:
+    """Return the labels that the smallest regular fraction around the rows has and they lack.
+
+    Returns:
+        The missing labels in Yates order and the number of cases of that fraction.
+    """
+    factors = [str(name) for name in levels.columns]
+    factorial = levels[(levels != 0).all(axis=1)].drop_duplicates()
+    words = defining_words(factorial.to_numpy(float), ''.join(factors))
+    grid = corners(factors)
+    inside = np.ones(len(grid), dtype=bool)
+    for word, sign in words.items():
+        inside &= grid[list(word)].prod(axis=1).to_numpy() == sign
+    run = set(labels(factorial))
+    expected = labels(grid[inside])
+    return tuple(label for label in expected if label not in run), len(expected)
+
+
+def describe_words(levels: pd.DataFrame) -> tuple[str, int | None]:
+    """Return the defining relation of the rows and their resolution (None: a full factorial)."""
+    factorial = levels[(levels != 0).all(axis=1)].drop_duplicates()
+    words = defining_words(factorial.to_numpy(float), ''.join(map(str, levels.columns)))
+    return defining_relation(words), resolution(words)

@@ -16,32 +16,9 @@ from scipy import linalg, stats
 
 from hexapod_doe.errors import AnalysisError
 from hexapod_doe.model import check_rank, model_matrix
+from hexapod_doe.pure_error import LackOfFit, lack_of_fit
 
 _SATURATED = 1e-9
-
-
-@dataclass(frozen=True)
-class LackOfFit:
-    """Test of the model against the pure error of repeated runs."""
-
-    ss_lack_of_fit: float
-    df_lack_of_fit: int
-    ss_pure_error: float
-    df_pure_error: int
-    f: float
-    p: float
-
-
-@dataclass(frozen=True)
-class Curvature:
-    """Test of the centre points against the mean of the factorial runs, by pure error."""
-
-    difference: float
-    """Mean of the factorial runs minus mean of the centre points."""
-    ss: float
-    df_error: int
-    f: float | None
-    p: float | None
 
 
 @dataclass(frozen=True)
@@ -168,7 +145,7 @@ def ols(levels: pd.DataFrame, response: np.ndarray, terms: Sequence[str]) -> Fit
         sst=float(((response - response.mean()) ** 2).sum()),
         press=_press(residuals, leverage),
         press_cases=_press_cases(residuals, leverage, cases),
-        lack_of_fit=_lack_of_fit(sse, response, cases, len(terms)),
+        lack_of_fit=lack_of_fit(sse, response, cases, len(terms)),
     )
 
 
@@ -191,37 +168,3 @@ def _press_cases(residuals: np.ndarray, leverage: np.ndarray, cases: np.ndarray)
     totals = np.bincount(cases, weights=residuals)[cases]
     deleted = residuals + leverage * totals / (1 - runs * leverage)
     return float((deleted**2).sum())
-
-
-def _lack_of_fit(
-    sse: float, response: np.ndarray, cases: np.ndarray, parameters: int
-) -> LackOfFit | None:
-    count = np.bincount(cases)
-    df_pure, df_lack = len(response) - len(count), len(count) - parameters
-    if df_pure < 1 or df_lack < 1:
-        return None
-    means = np.bincount(cases, weights=response) / count
-    pure = float(((response - means[cases]) ** 2).sum())
-    lack = max(sse - pure, 0.0)
-    if pure <= 0:
-        return None
-    f = (lack / df_lack) / (pure / df_pure)
-    return LackOfFit(lack, df_lack, pure, df_pure, f, float(stats.f.sf(f, df_lack, df_pure)))
-
-
-def curvature(levels: pd.DataFrame, response: np.ndarray) -> Curvature | None:
-    """Return the curvature test, or None without centre points.
-
-    SS = (ȳ_F − ȳ_C)²·n_F·n_C/(n_F + n_C) on one degree of freedom against pure error.
-    """
-    centre = (levels == 0).all(axis=1).to_numpy()
-    if not centre.any() or centre.all():
-        return None
-    cases = levels.groupby(list(levels.columns), sort=False).ngroup().to_numpy()
-    means = np.bincount(cases, weights=response) / np.bincount(cases)
-    pure = float(((response - means[cases]) ** 2).sum())
-    df = len(response) - len(means)
-    difference = float(response[~centre].mean() - response[centre].mean())
-    ss = difference**2 * centre.sum() * (~centre).sum() / len(centre)
-    f = ss / (pure / df) if df and pure > 0 else None
-    return Curvature(difference, ss, df, f, None if f is None else float(stats.f.sf(f, 1, df)))

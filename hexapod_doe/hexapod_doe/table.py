@@ -9,9 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 import pandas as pd
 
-from hexapod_doe.aliases import defining_relation, defining_words, resolution
 from hexapod_doe.errors import AnalysisError
-from hexapod_doe.model import corners, labels
+from hexapod_doe.model import labels
 
 RESPONSE = 'response'
 CURVE_COLUMNS = ('run_id', 'label', 'case', 'replicate', 'episode', 'return', 'average')
@@ -175,28 +174,3 @@ def _yates(raw: pd.DataFrame, factors: Sequence[str]) -> pd.Series:
     return (
         pd.Series(np.where(centre, 2 ** len(factors), position)).rank(method='dense').astype(int)
     )
-
-
-def missing_cases(levels: pd.DataFrame) -> tuple[tuple[str, ...], int]:
-    """Return the labels that the smallest regular fraction around the rows has and they lack.
-
-    Returns:
-        The missing labels in Yates order and the number of cases of that fraction.
-    """
-    factors = [str(name) for name in levels.columns]
-    factorial = levels[(levels != 0).all(axis=1)].drop_duplicates()
-    words = defining_words(factorial.to_numpy(float), ''.join(factors))
-    grid = corners(factors)
-    inside = np.ones(len(grid), dtype=bool)
-    for word, sign in words.items():
-        inside &= grid[list(word)].prod(axis=1).to_numpy() == sign
-    run = set(labels(factorial))
-    expected = labels(grid[inside])
-    return tuple(label for label in expected if label not in run), len(expected)
-
-
-def describe_words(levels: pd.DataFrame) -> tuple[str, int | None]:
-    """Return the defining relation of the rows and their resolution (None: a full factorial)."""
-    factorial = levels[(levels != 0).all(axis=1)].drop_duplicates()
-    words = defining_words(factorial.to_numpy(float), ''.join(map(str, levels.columns)))
-    return defining_relation(words), resolution(words)

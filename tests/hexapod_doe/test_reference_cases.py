@@ -20,7 +20,8 @@ import pytest
 from hexapod_doe.elimination import eliminate
 from hexapod_doe.lenth import lenth
 from hexapod_doe.model import CURVATURE, estimable_terms
-from hexapod_doe.regression import Fit, curvature, ols
+from hexapod_doe.pure_error import curvature
+from hexapod_doe.regression import Fit, ols
 from scipy import stats
 
 DATA = Path(__file__).parents[1] / 'data' / 'doe_cases'

@@ -7,7 +7,8 @@ import pytest
 from hexapod_doe.design import fraction
 from hexapod_doe.errors import AnalysisError
 from hexapod_doe.model import corners, estimable_terms, model_matrix
-from hexapod_doe.regression import curvature, ols
+from hexapod_doe.pure_error import curvature
+from hexapod_doe.regression import ols
 
 
 def random_table(rng: np.random.Generator, replicates: int = 3) -> tuple[pd.DataFrame, np.ndarray]:

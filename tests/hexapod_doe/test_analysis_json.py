@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from hexapod_doe.results import Analysis, Step, to_json
+from hexapod_doe.analysis_json import to_json
+from hexapod_doe.results import Analysis, Step
 from hexapod_doe.transform import Transform
 
 DOCUMENT = (Path(__file__).parents[2] / 'docs' / 'analysis_json.md').read_text()
