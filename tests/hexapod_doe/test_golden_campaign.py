@@ -13,6 +13,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hexapod_doe.csv_table import read_csv
+from hexapod_doe.model import AliasedTermsError, estimable_terms
+from hexapod_doe.regression import ols
+from hexapod_doe.terms import terms_up_to
 
 from hexapod_doe import analyze
 
@@ -136,3 +140,25 @@ def test_the_switches_of_the_article_one_by_one(
     assert status == 0
     single = json.loads((tmp_path / 'analysis.json').read_text())
     assert single['steps'][-1] == article['steps'][-1]
+
+
+def test_alias_attribution(article: dict[str, Any], golden: dict[str, Any]) -> None:
+    expected, found = golden['alias_attribution'], article['attribution']
+    assert found['ambiguous'] == expected['ambiguous_terms']
+    assert found['attributions'] == expected['n_attributions']
+    assert found['winners'] == expected['winners']
+
+
+def test_a_confounded_term_is_neither_split_nor_silently_kept() -> None:
+    # A fit by formula halves CE and gives the other half to FG without a word.
+    trap = json.loads((DATA / 'formula_checks.json').read_text())[
+        'statsmodels_aliased_columns_trap'
+    ]
+    table = read_csv(DATA / 'synth_2_7_2_r10.csv', 'final_average_reward')[0]
+    with pytest.raises(AliasedTermsError, match='FG with CE'):
+        ols(table.levels, table.values, ['1', *terms_up_to('ABCDEFG', 2)])
+    fit = ols(table.levels, table.values, estimable_terms(table.levels, 2))
+    index = fit.terms.index('CE')
+    assert fit.coef[index] == pytest.approx(trap['CE_when_FG_left_out'], **EXACT)
+    assert fit.p[index] == pytest.approx(trap['p_CE_clean'], **EXACT)
+    assert (len(fit.terms), fit.df_error) == (trap['rank'], trap['df_resid_clean'])
