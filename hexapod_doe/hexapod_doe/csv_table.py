@@ -82,7 +82,7 @@ def _table(
         rows, caveats = build_rows(raw, factors)
     except TableError as error:
         raise TableError(f'{path}: {error}') from error
-    title = f'{path.stem} {design}'.strip()
+    title = path.stem if design in ('', path.stem) else f'{path.stem} {design}'
     return RunTable(title, str(path), response, factors, rows, caveats, design)
 
 
