@@ -13,7 +13,7 @@ from hexapod_interfaces.msg import LineOffset, StepOutcome
 from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.diagnostics import Diagnostics, Health
 from hexapod_node.matching import unheard
-from hexapod_node.parameters import ConfigParameters
+from hexapod_node.parameters import ConfigParameters, Parameter, declare
 from hexapod_node.qos import LOCK_STEP
 from hexapod_node.spin import run
 from hexapod_node.stamp_gate import DuePeriod
@@ -27,6 +27,11 @@ from hexapod_sim.messages import SENSOR_TOPICS, fill_odometry, new_odometry, tar
 from hexapod_sim.robot import CONTROL_PERIOD_NS, ODOM_FRAME
 from hexapod_sim.sensors import read
 from hexapod_sim.task import LineTask, Outcome, TaskConfig
+from hexapod_sim.viewer import Viewer
+
+PARAMETERS = (
+    Parameter('viewer', False, 'show the robot in a window, in real time; needs a display'),
+)
 
 
 class SimNode(Node):
@@ -34,8 +39,11 @@ class SimNode(Node):
 
     def __init__(self) -> None:
         super().__init__('sim')
+        declare(self, PARAMETERS)
         self._config = ConfigParameters(self, TaskConfig, 'task')
         self._task = LineTask(self._config.get())
+        shown = self.get_parameter('viewer').value
+        self._viewer = Viewer(self._task.simulation) if shown else None
         self._now_ns = 0
         self._due = DuePeriod(CONTROL_PERIOD_NS)
         self._rejected = 0
@@ -68,6 +76,12 @@ class SimNode(Node):
         )
         self.create_service(ResetEpisode, '~/reset', self._on_reset)
         Diagnostics(self, self._health)
+
+    def destroy_node(self) -> None:
+        """Close the window, then the node."""
+        if self._viewer is not None:
+            self._viewer.close()
+        super().destroy_node()
 
     def _on_reset(
         self, request: ResetEpisode.Request, response: ResetEpisode.Response
@@ -105,6 +119,8 @@ class SimNode(Node):
 
     def _publish(self, outcome: Outcome) -> None:
         """Publish the sample of now: sensors first, then what they earned, then the clock."""
+        if self._viewer is not None:
+            self._viewer.show()
         stamp = time_message(self._now_ns)
         heard = [entry for entry in self._sensors if entry[2].get_subscription_count()]
         needed = {key for sensor, _, _ in heard for key in sensor.readings}

@@ -97,6 +97,8 @@ class Simulation:
     def set_goal_line(self, y: float) -> None:
         """Move the visible goal line to y [m] of odom; it touches nothing."""
         self.data.mocap_pos[0, 1] = y
+        # What is drawn is the site, which would follow with the next control period only.
+        self.data.site('goal_line').xpos[1] = y
 
     @property
     def position(self) -> np.ndarray:

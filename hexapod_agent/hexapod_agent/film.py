@@ -1,0 +1,84 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Command line `film`: an episode of a checkpoint, or of a straight walk, as a film or a strip."""
+
+import argparse
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+from hexapod_cpg.mapping import ACTION_SIZE
+from hexapod_sim.film import Camera, FilmError, Frame, strip, write_film, write_picture
+from hexapod_sim.robot import CONTROL_PERIOD_NS
+
+from hexapod_agent import checkpoint
+from hexapod_agent.config import AgentConfig, ConfigError
+from hexapod_agent.env import HexapodLine
+from hexapod_agent.policies import Policy, constant_policy, trained_policy
+
+_PERIODS_PER_FRAME = 2
+FRAMES_PER_SECOND = 1_000_000_000 // (CONTROL_PERIOD_NS * _PERIODS_PER_FRAME)
+
+
+def main(args: Sequence[str] | None = None) -> None:
+    """Film what the command line names."""
+    parser = _parser()
+    options = parser.parse_args(args)
+    if not (options.out or options.strip):
+        parser.error('nothing to write, expected --out or --strip')
+    try:
+        env, policy = _subject(options)
+        frames = list(film(env, policy, options))
+        if options.out:
+            write_film(frames, options.out, FRAMES_PER_SECOND)
+    except (ConfigError, checkpoint.CheckpointError, FilmError) as error:
+        parser.error(str(error))
+    if options.strip:
+        chosen = np.linspace(0, len(frames) - 1, options.frames).round().astype(int)
+        write_picture(strip([frames[index] for index in chosen]), options.strip)
+
+
+def film(env: HexapodLine, policy: Policy, options: argparse.Namespace) -> Iterator[Frame]:
+    """Yield the pictures of an episode, `FRAMES_PER_SECOND` of them per simulated second."""
+    observation, _ = env.reset(seed=options.seed)
+    size = (options.width, options.height)
+    camera = Camera(env.task.simulation, options.camera, *size, options.zoom)
+    steps = round(options.seconds * 1e9 / CONTROL_PERIOD_NS)
+    try:
+        while env.outcome.step < steps and not (env.outcome.terminated or env.outcome.truncated):
+            if env.outcome.step % _PERIODS_PER_FRAME == 0:
+                yield camera.shoot()
+            observation, *_ = env.step(policy(observation))
+    finally:
+        camera.close()
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog='film', description=__doc__)
+    parser.add_argument('checkpoint', nargs='?', help='file of train; default: action zero')
+    parser.add_argument('--config', help='file of changes to the configuration')
+    parser.add_argument('--seed', type=int, default=1, help='seed of the start (default 1)')
+    parser.add_argument('--seconds', type=float, default=6.0, help='longest film (default 6)')
+    parser.add_argument('--camera', choices=('track', 'top'), default='track')
+    parser.add_argument('--zoom', type=float, default=1.6, help='of the lens (default 1.6)')
+    parser.add_argument('--width', type=int, default=480, help='pixels (default 480)')
+    parser.add_argument('--height', type=int, default=320, help='pixels (default 320)')
+    parser.add_argument('--out', type=Path, help='film to write, .gif or .mp4')
+    parser.add_argument('--strip', type=Path, help='picture of some frames side by side to write')
+    parser.add_argument('--frames', type=int, default=5, help='frames of the strip (default 5)')
+    return parser
+
+
+def _subject(options: argparse.Namespace) -> tuple[HexapodLine, Policy]:
+    """Environment and policy that the options ask for."""
+    if not options.checkpoint:
+        config = AgentConfig.load(options.config)
+        return HexapodLine('', config), constant_policy(np.zeros(ACTION_SIZE, np.float32))
+    trainer = checkpoint.load(options.checkpoint)
+    config = trainer.config.changed_by(options.config) if options.config else trainer.config
+    return HexapodLine(trainer.spec.letters, config), trained_policy(trainer.agent)
+
+
+if __name__ == '__main__':
+    main()
