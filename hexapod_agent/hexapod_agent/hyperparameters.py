@@ -38,6 +38,7 @@ class CriticConfig:
     Attributes:
         hidden: Units of the observation branch; the action branch has as many as its last layer.
         merge: How the branches meet.
+        initial_value: Value that every action in every state has at first: the output's bias.
         learning_rate: Adam's step size.
         l2: Factor of the L2 term in the gradient, weights only.
         gradient_threshold: Largest L2 norm of an array's gradient.
@@ -45,6 +46,7 @@ class CriticConfig:
 
     hidden: tuple[int, ...]
     merge: Literal['add', 'append']
+    initial_value: float
     learning_rate: float
     l2: float
     gradient_threshold: float

@@ -46,8 +46,14 @@ class ParameterStack:
         }
 
     def like(self) -> 'ParameterStack':
-        """Make a stack of the same layout, filled with zeros: gradients, or a target network."""
+        """Make a stack of the same layout, filled with zeros: gradients."""
         return ParameterStack(self.shapes, self.agents, self.flat.dtype)
+
+    def copy(self) -> 'ParameterStack':
+        """Make a stack of the same layout with the same numbers: a target network."""
+        copy = self.like()
+        copy.flat.copy_(self.flat)
+        return copy
 
     def weight(self, name: str) -> Tensor:
         """View of a weight (agents, out, in); (out, in) for a stack of one."""

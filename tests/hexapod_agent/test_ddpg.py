@@ -14,7 +14,14 @@ SIZES = (5, 3)
 BATCH = 16
 
 
-def make(agents: int = 1, seed: int = 0, batch: int = BATCH, rate: float = 1e-2, **actor) -> Ddpg:
+def make(
+    agents: int = 1,
+    seed: int = 0,
+    batch: int = BATCH,
+    rate: float = 1e-2,
+    value: float = 0.0,
+    **actor,
+) -> Ddpg:
     values = {
         'hidden': (20, 10), 'learning_rate': rate, 'l2': 0.0, 'gradient_threshold': 1e9,
         'preactivation_penalty': 0.0, 'normalize_loss': False,
@@ -22,7 +29,7 @@ def make(agents: int = 1, seed: int = 0, batch: int = BATCH, rate: float = 1e-2,
     return Ddpg(
         *SIZES,
         ActorConfig(**values | actor),
-        CriticConfig((20, 10), 'add', rate, 0.0, 1e9),
+        CriticConfig((20, 10), 'add', value, rate, 0.0, 1e9),
         batch,
         target_smoothing=0.1,
         generator=torch.Generator().manual_seed(seed),
@@ -180,3 +187,27 @@ def test_same_seed_same_weights():
     assert torch.equal(first.actor_parameters.flat, second.actor_parameters.flat)
     assert torch.equal(first.critic_parameters.flat, second.critic_parameters.flat)
     assert not torch.equal(first.actor_parameters.flat, other.actor_parameters.flat)
+
+
+def test_initial_value_is_that_of_every_state_and_of_the_target():
+    agent = make(value=50.0)
+    for part in ('critic', 'target_critic'):
+        stack = agent.critic_parameters.like()
+        stack.flat.copy_(agent.state_dict()[part])
+        assert stack.arrays['output.bias'].item() == pytest.approx(50.0, abs=5e-3)
+    agent.batch.bootstrap.fill_(0.5)
+    # TD error Q - (r + Q'/2) = 25 but for what the small output weights add.
+    assert agent.update().critic_loss.item() == pytest.approx(625.0, rel=0.01)
+
+
+@pytest.mark.parametrize('fails', [False, True])
+def test_denormal_numbers_survive_outside_an_update(fails, monkeypatch):
+    """Flushing is a state of the thread, in which the physics may run as well."""
+    agent = make()
+    if fails:
+        monkeypatch.setattr(agent, '_update_critic', lambda: 1 / 0)
+        with pytest.raises(ZeroDivisionError):
+            agent.update()
+    else:
+        agent.update()
+    assert torch.tensor(1e-310, dtype=torch.float64) * 0.5 > 0
