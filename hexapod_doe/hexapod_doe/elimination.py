@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 from scipy import linalg, stats
 
-from hexapod_doe.model import model_matrix, parents, split_dependent, term_key
+from hexapod_doe.model import independent_terms, model_matrix, parents, term_key
 from hexapod_doe.terms import CONSTANT, contains, order, sort_key
 
 
@@ -58,8 +58,7 @@ def with_parents(levels: pd.DataFrame, terms: Sequence[str]) -> tuple[str, ...]:
         wanted |= missing
         queue += missing
     added = sorted(wanted - set(terms), key=sort_key)
-    kept, _ = split_dependent(levels, [*terms, *added])
-    return tuple(sorted(kept, key=term_key))
+    return tuple(sorted(independent_terms(levels, [*terms, *added]), key=term_key))
 
 
 def eliminate(

@@ -90,33 +90,35 @@ def labels(levels: pd.DataFrame) -> list[str]:
     return [letters_on(row, factors) or EMPTY_SET for row in levels.to_numpy(float)]
 
 
-def split_dependent(
-    levels: pd.DataFrame, terms: Sequence[str]
-) -> tuple[tuple[str, ...], dict[str, tuple[str, ...]]]:
-    """Split terms into independent ones, taken in the given order, and those they explain.
-
-    Returns:
-        The independent terms, and for each other term the independent terms that its column is
-        a combination of.
-    """
+def independent_terms(levels: pd.DataFrame, terms: Sequence[str]) -> tuple[str, ...]:
+    """Return the terms, taken in order, whose columns the ones before them don't explain."""
     columns = model_matrix(levels.drop_duplicates(), terms)
     basis = np.empty((len(columns), 0))
-    kept: list[int] = []
-    explained: dict[str, tuple[str, ...]] = {}
-    for index, term in enumerate(terms):
-        vector = columns[:, index]
+    kept = []
+    for term, vector in zip(terms, columns.T, strict=True):
+        if basis.shape[1] == len(columns):
+            break
         rest = vector - basis @ (basis.T @ vector)
         rest -= basis @ (basis.T @ rest)  # a second pass keeps the basis orthogonal
         length = np.linalg.norm(rest)
         if length > _TOLERANCE * max(1.0, float(np.linalg.norm(vector))):
             basis = np.column_stack([basis, rest / length])
-            kept.append(index)
-        else:
-            weights = np.linalg.lstsq(columns[:, kept], vector)[0]
-            explained[term] = tuple(
-                terms[i] for i, weight in zip(kept, weights, strict=True) if abs(weight) > 1e-6
-            )
-    return tuple(terms[i] for i in kept), explained
+            kept.append(term)
+    return tuple(kept)
+
+
+def explain_dependent(levels: pd.DataFrame, terms: Sequence[str]) -> dict[str, tuple[str, ...]]:
+    """Return for each dependent term the independent ones that its column is made of."""
+    cases = levels.drop_duplicates()
+    kept = independent_terms(levels, terms)
+    others = [term for term in terms if term not in kept]
+    if not others:
+        return {}
+    weights = np.linalg.lstsq(model_matrix(cases, kept), model_matrix(cases, others))[0]
+    return {
+        term: tuple(name for name, weight in zip(kept, column, strict=True) if abs(weight) > 1e-6)
+        for term, column in zip(others, weights.T, strict=True)
+    }
 
 
 def check_rank(levels: pd.DataFrame, terms: Sequence[str]) -> None:
@@ -125,7 +127,7 @@ def check_rank(levels: pd.DataFrame, terms: Sequence[str]) -> None:
     Raises:
         AliasedTermsError: Naming each aliased term and the terms that it cannot be told from.
     """
-    _, explained = split_dependent(levels, terms)
+    explained = explain_dependent(levels, terms)
     if explained:
         pairs = '; '.join(f'{term} with {" + ".join(by)}' for term, by in explained.items())
         raise AliasedTermsError(
@@ -144,8 +146,7 @@ def estimable_terms(levels: pd.DataFrame, max_order: int | None = None) -> tuple
     wanted = [CONSTANT, *terms_up_to(factors, min(max_order or len(factors), len(factors)))]
     if (levels == 0).all(axis=1).any() and is_curvature(CURVATURE, factors):
         wanted.insert(1, CURVATURE)
-    kept, _ = split_dependent(levels, wanted)
-    return tuple(sorted(kept, key=term_key))
+    return tuple(sorted(independent_terms(levels, wanted), key=term_key))
 
 
 def alias_strings(levels: pd.DataFrame, terms: Iterable[str]) -> dict[str, str]:

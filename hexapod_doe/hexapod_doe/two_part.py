@@ -18,7 +18,7 @@ from scipy import special, stats
 from hexapod_doe.draws import coefficient_draws
 from hexapod_doe.elimination import eliminate
 from hexapod_doe.logistic import LogisticFit, firth
-from hexapod_doe.model import corners, estimable_terms, model_matrix, split_dependent
+from hexapod_doe.model import corners, estimable_terms, independent_terms, model_matrix
 from hexapod_doe.regression import Fit, ols
 from hexapod_doe.table import RunTable
 from hexapod_doe.terms import CONSTANT, order
@@ -87,8 +87,8 @@ class PartDraws:
 def fit_parts(table: RunTable, threshold: float) -> Parts | None:
     """Fit both parts without selection; None where there are too few failures or successes."""
     failed = table.values < threshold
-    mains = _estimable(table.levels, [CONSTANT, *table.factors])
-    success_terms = _estimable(table.levels[~failed], estimable_terms(table.levels, 2))
+    mains = independent_terms(table.levels, [CONSTANT, *table.factors])
+    success_terms = independent_terms(table.levels[~failed], estimable_terms(table.levels, 2))
     while failed.sum() >= 2 and (~failed).sum() - len(success_terms) < 2:
         highest = max(map(order, success_terms))
         if highest < 2:
@@ -131,10 +131,6 @@ def _fit(
         levels=levels[~failed],
         response=values[~failed],
     )
-
-
-def _estimable(levels: pd.DataFrame, terms: Sequence[str]) -> tuple[str, ...]:
-    return split_dependent(levels, list(terms))[0]
 
 
 def _mean_draws(values: np.ndarray, draws: int, rng: np.random.Generator) -> np.ndarray:

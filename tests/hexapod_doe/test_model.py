@@ -11,11 +11,12 @@ from hexapod_doe.model import (
     check_rank,
     corners,
     estimable_terms,
+    explain_dependent,
+    independent_terms,
     labels,
     model_matrix,
     parents,
     parse_terms,
-    split_dependent,
 )
 
 
@@ -57,13 +58,13 @@ def test_aliased_terms_are_refused_by_name() -> None:
         check_rank(levels_of('quarter'), ['1', 'CE', 'FG'])
 
 
-def test_split_dependent_names_a_combination_of_several_terms() -> None:
-    # Without the case (+, +) of a 2^2 the product column is -1 + A + B (on the three others: a
-    # plane through three points), so AB depends on all of the rest.
+def test_a_column_may_depend_on_several_others() -> None:
+    # Without the case (+, +) of a 2^2 the product column is -1 - A - B: a plane through the
+    # three points that are left.
     levels = pd.DataFrame({'A': [-1, 1, -1], 'B': [-1, -1, 1]})
-    kept, explained = split_dependent(levels, ['1', 'A', 'B', 'AB'])
-    assert kept == ('1', 'A', 'B')
-    assert set(explained['AB']) == {'1', 'A', 'B'}
+    terms = ('1', 'A', 'B', 'AB')
+    assert independent_terms(levels, terms) == ('1', 'A', 'B')
+    assert explain_dependent(levels, terms) == {'AB': ('1', 'A', 'B')}
 
 
 @pytest.mark.parametrize(('name', 'count'), [('quarter', 32), ('eighth', 16), ('full', 128)])
