@@ -140,7 +140,10 @@ class ObservationSpec:
         topics: Topics to subscribe to, relative, in the order of the channels.
         names: Names of the channels.
         readings: Keys that `assemble` looks up.
+        sizes: Count of numbers of each part, readings and previous action, in their order.
         size: Count of numbers.
+        center: Value observed as 0, for each number, in its unit (size,).
+        scale: Deviation from it observed as 1, for each number (size,).
     """
 
     def __init__(self, observations: str) -> None:
@@ -150,8 +153,8 @@ class ObservationSpec:
         self.names = tuple(channel.name for channel in self.channels)
         self.size = sum(channel.size for channel in self.channels)
         self._slices: dict[str, tuple[Channel, slice]] = {}
-        self._center = np.empty(self.size)
-        self._scale = np.empty(self.size)
+        self.center = np.empty(self.size)
+        self.scale = np.empty(self.size)
         start = 0
         for channel in self.channels:
             centers = channel.centers or (0.0,) * len(channel.readings)
@@ -159,10 +162,11 @@ class ObservationSpec:
             for key, size, scale, center in zip(channel.readings, *columns, strict=True):
                 part = slice(start, start + size)
                 self._slices[key] = (channel, part)
-                self._scale[part] = scale
-                self._center[part] = center
+                self.scale[part] = scale
+                self.center[part] = center
                 start += size
         self.readings = tuple(key for key in self._slices if key != PREVIOUS_ACTION)
+        self.sizes = {key: part.stop - part.start for key, (_, part) in self._slices.items()}
 
     def assemble(
         self, readings: Mapping[str, NDArray[np.floating]], previous_action: NDArray[np.floating]
@@ -190,8 +194,8 @@ class ObservationSpec:
             raise ObservationError(
                 f'{self.locate(index)} is {vector[index]}, expected a finite number'
             )
-        vector -= self._center
-        vector /= self._scale
+        vector -= self.center
+        vector /= self.scale
         return vector.clip(-1.0, 1.0).astype(np.float32)
 
     def locate(self, index: int) -> str:

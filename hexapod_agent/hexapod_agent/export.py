@@ -1,0 +1,141 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Command line `export`: a checkpoint's policy as ONNX, from readings in SI units to the action.
+
+The file needs nothing of this project to run: it normalises the readings itself, and its metadata
+is the contract of what to feed in and what comes out.
+"""
+
+import argparse
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import onnx
+from hexapod_cpg.mapping import ACTION_SIZE
+from hexapod_sim.robot import CONTROL_PERIOD_NS, JOINTS, LEGS
+from numpy.typing import NDArray
+from onnx import TensorProto, helper, numpy_helper
+
+from hexapod_agent import checkpoint
+from hexapod_agent.config import ConfigError
+from hexapod_agent.observation import PREVIOUS_ACTION, ObservationSpec
+from hexapod_agent.training import Trainer
+
+_OPSET = 17
+_IR_VERSION = 8  # the opset's own; newer ones shut out older runtimes
+_ACTION = 'action'
+_BATCH = 'batch'
+
+
+def main(args: Sequence[str] | None = None) -> None:
+    """Write the file that the command line names."""
+    parser = argparse.ArgumentParser(prog='export', description=__doc__)
+    parser.add_argument('checkpoint', help='file of train')
+    parser.add_argument('out', type=Path, help='ONNX file to write')
+    options = parser.parse_args(args)
+    try:
+        trainer = checkpoint.load(options.checkpoint)
+    except (ConfigError, checkpoint.CheckpointError) as error:
+        parser.error(str(error))
+    onnx.save(policy_model(trainer), options.out)
+    print(f'{options.out}: action from {", ".join(trainer.spec.sizes)}')
+
+
+def policy_model(trainer: Trainer) -> onnx.ModelProto:
+    """Return the noise-free policy as a model.
+
+    Inputs are one array (batch, size) float64 per reading, by its key in the sensor table, and
+    `previous_action`; the output `action` is (batch, 30) float32, within +-1. The observation is
+    made in float64 and rounded once, as `ObservationSpec.assemble` does.
+    """
+    spec = trainer.spec
+    constants = {
+        'center': spec.center, 'scale': spec.scale,
+        'lowest': np.array(-1.0), 'highest': np.array(1.0),
+    }  # fmt: skip
+    nodes = [
+        helper.make_node('Concat', list(spec.sizes), ['readings'], axis=1),
+        helper.make_node('Sub', ['readings', 'center'], ['deviation']),
+        helper.make_node('Div', ['deviation', 'scale'], ['scaled']),
+        helper.make_node('Clip', ['scaled', 'lowest', 'highest'], ['clipped']),
+        helper.make_node('Cast', ['clipped'], ['observation'], to=TensorProto.FLOAT),
+    ]
+    arrays = trainer.agent.actor_parameters.arrays
+    weights = {name: array[0].numpy() for name, array in arrays.items()}
+    graph = helper.make_graph(
+        [*nodes, *_layers(weights)],
+        'hexapod_policy',
+        [
+            helper.make_tensor_value_info(key, TensorProto.DOUBLE, [_BATCH, size])
+            for key, size in spec.sizes.items()
+        ],
+        [helper.make_tensor_value_info(_ACTION, TensorProto.FLOAT, [_BATCH, ACTION_SIZE])],
+        [numpy_helper.from_array(value, name) for name, value in (constants | weights).items()],
+    )
+    model = helper.make_model(
+        graph, opset_imports=[helper.make_opsetid('', _OPSET)], ir_version=_IR_VERSION,
+        producer_name='hexapod_agent', doc_string='Policy of a hexapod that follows a line.',
+    )  # fmt: skip
+    helper.set_model_props(model, contract(trainer))
+    onnx.checker.check_model(model, full_check=True)
+    return model
+
+
+def _layers(weights: Mapping[str, NDArray[np.float32]]) -> list[onnx.NodeProto]:
+    """Affine layers with ReLU between them, and tanh after the last."""
+    nodes, x = [], 'observation'
+    names = [name.removesuffix('.weight') for name in weights if name.endswith('.weight')]
+    for name in names:
+        arrays = [f'{name}.weight', f'{name}.bias']
+        nodes.append(helper.make_node('Gemm', [x, *arrays], [f'{name}.sum'], transB=1))
+        last = name == names[-1]
+        x = _ACTION if last else f'{name}.output'
+        nodes.append(helper.make_node('Tanh' if last else 'Relu', [f'{name}.sum'], [x]))
+    return nodes
+
+
+def contract(trainer: Trainer) -> dict[str, str]:
+    """Return what a user of the model must know, as its metadata; values are JSON."""
+    cpg = trainer.config.cpg
+    content: dict[str, Any] = {
+        'observations': trainer.spec.letters,
+        'inputs': inputs_of(trainer.spec),
+        'action': {
+            'layout': 'leg-major: five numbers of each leg in turn',
+            'legs': LEGS,
+            'reading': cpg.reading,
+            'ranges': vars(cpg.ranges),
+            'pattern_generator': vars(cpg.hopf),
+        },
+        'joints': JOINTS,
+        'control_period_ns': CONTROL_PERIOD_NS,
+        'seed': trainer.seed,
+        'episodes': trainer.episode,
+    }
+    return {key: json.dumps(value, ensure_ascii=False) for key, value in content.items()}
+
+
+def inputs_of(spec: ObservationSpec) -> list[dict[str, Any]]:
+    """Return a row per input: where it comes from, its size, unit and normalisation."""
+    rows, start = [], 0
+    for channel in spec.channels:
+        for key, unit in zip(channel.readings, channel.units, strict=True):
+            row = {
+                'input': key, 'channel': channel.name, 'letter': channel.letter,
+                'topics': channel.topics, 'message_type': channel.message_type,
+                'size': spec.sizes[key], 'unit': unit,
+                'scale': float(spec.scale[start]), 'center': float(spec.center[start]),
+            }  # fmt: skip
+            if key == PREVIOUS_ACTION:
+                row['first'] = 'zeros, until there is one'
+            rows.append(row)
+            start += spec.sizes[key]
+    return rows
+
+
+if __name__ == '__main__':
+    main()
