@@ -12,7 +12,10 @@ setup(
     maintainer='Hexapod team',
     maintainer_email='team@hexapod.invalid',
     packages=find_packages(exclude=['test']),
-    package_data={'hexapod_doe': ['templates/*', '*.yaml']},
+    package_data={
+        'hexapod_doe.choosing': ['*.yaml'],
+        'hexapod_doe.reporting': ['templates/*'],
+    },
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),

@@ -7,16 +7,16 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from hexapod_doe.analysis import analyse
-from hexapod_doe.analysis_json import write_json
-from hexapod_doe.analyze_arguments import build_parser
-from hexapod_doe.bag_table import RESPONSE_NAME, bag_responses, plan_rule, read_bags
-from hexapod_doe.csv_table import read_csv, read_responses
+from hexapod_doe.analysis.analysis import analyse
+from hexapod_doe.analysis.analysis_json import write_json
+from hexapod_doe.analysis.analyze_arguments import build_parser
+from hexapod_doe.analysis.options import Options
+from hexapod_doe.analysis.results import Analysis
 from hexapod_doe.errors import AnalysisError, BagError
-from hexapod_doe.options import Options
-from hexapod_doe.report import write_report
-from hexapod_doe.results import Analysis
-from hexapod_doe.table import RunTable
+from hexapod_doe.reporting.report import write_report
+from hexapod_doe.tables.bag_table import RESPONSE_NAME, bag_responses, plan_rule, read_bags
+from hexapod_doe.tables.csv_table import read_csv, read_responses
+from hexapod_doe.tables.table import RunTable
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

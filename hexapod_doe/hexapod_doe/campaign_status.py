@@ -10,9 +10,9 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from hexapod_doe.campaign import PLAN_FILE, Campaign
-from hexapod_doe.plan_file import PlanError
-from hexapod_doe.rosbag2 import partial_path
+from hexapod_doe.bags.rosbag2 import partial_path
+from hexapod_doe.campaigns.campaign import PLAN_FILE, Campaign
+from hexapod_doe.designs.plan_file import PlanError
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -12,9 +12,9 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
+from hexapod_doe.analysis.follow import BAND, CHECK_S, Response, read_track, responses
 from hexapod_doe.errors import BagError
-from hexapod_doe.figures.follow import save_following
-from hexapod_doe.follow import BAND, CHECK_S, Response, read_track, responses
+from hexapod_doe.reporting.figures.follow import save_following
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -25,9 +25,9 @@ from rclpy.action import ActionClient, get_action_names_and_types
 from rclpy.node import Node
 from rclpy.task import Future
 
-from hexapod_doe.campaign import Campaign, Row
-from hexapod_doe.dashboard import Dashboard
-from hexapod_doe.local_workers import LocalWorkers
+from hexapod_doe.campaigns.campaign import Campaign, Row
+from hexapod_doe.campaigns.dashboard import Dashboard
+from hexapod_doe.campaigns.local_workers import LocalWorkers
 
 _ACTION = 'hexapod_interfaces/action/TrainRun'
 _TICK_S = 0.2

@@ -10,18 +10,18 @@ from pathlib import Path
 
 import numpy as np
 
-from hexapod_doe.aliases import alias_sets, representatives
-from hexapod_doe.augment import aimed_model, d_optimal, foldover, semifold, variance_ratios
-from hexapod_doe.blocks import confounded_with_blocks
-from hexapod_doe.design import Design, fraction, from_generators
-from hexapod_doe.plan_arguments import parse
-from hexapod_doe.plan_file import read_plan, write_plan
-from hexapod_doe.plan_table import follow_up, make_plan
-from hexapod_doe.plan_types import Confirmation, Plan
-from hexapod_doe.planner import Budget, describe, options, propose
-from hexapod_doe.power import power, smallest_effect
-from hexapod_doe.power_simulation import RunModel, simulate_power
-from hexapod_doe.terms import terms_up_to
+from hexapod_doe.designs.aliases import alias_sets, representatives
+from hexapod_doe.designs.augment import aimed_model, d_optimal, foldover, semifold, variance_ratios
+from hexapod_doe.designs.blocks import confounded_with_blocks
+from hexapod_doe.designs.design import Design, fraction, from_generators
+from hexapod_doe.designs.plan_arguments import parse
+from hexapod_doe.designs.plan_file import read_plan, write_plan
+from hexapod_doe.designs.plan_table import follow_up, make_plan
+from hexapod_doe.designs.plan_types import Confirmation, Plan
+from hexapod_doe.designs.planner import Budget, describe, options, propose
+from hexapod_doe.designs.power import power, smallest_effect
+from hexapod_doe.designs.power_simulation import RunModel, simulate_power
+from hexapod_doe.designs.terms import terms_up_to
 
 _ROMAN = {2: 'II', 3: 'III', 4: 'IV', 5: 'V', 6: 'VI', 7: 'VII', 8: 'VIII', 9: 'IX'}
 

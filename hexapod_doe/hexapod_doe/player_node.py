@@ -22,10 +22,10 @@ from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPo
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Trigger
 
-from hexapod_doe.bag_file import BagFile, RawMessage
+from hexapod_doe.bags.bag_file import BagFile, RawMessage
+from hexapod_doe.bags.playback import Frame, Playback
+from hexapod_doe.bags.rosbag2 import OfferedQos
 from hexapod_doe.errors import BagError
-from hexapod_doe.playback import Frame, Playback
-from hexapod_doe.rosbag2 import OfferedQos
 
 CLOCK_TOPIC = '/clock'
 CLOCK_TYPE = 'rosgraph_msgs/msg/Clock'

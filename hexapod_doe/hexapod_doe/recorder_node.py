@@ -24,11 +24,11 @@ from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
+from hexapod_doe.bags.recording import Recording
+from hexapod_doe.bags.rosbag2 import OfferedQos, Topic
+from hexapod_doe.bags.run_bag import EPISODE_RESULT
+from hexapod_doe.bags.salvage import set_aside
 from hexapod_doe.errors import BagError
-from hexapod_doe.recording import Recording
-from hexapod_doe.rosbag2 import OfferedQos, Topic
-from hexapod_doe.run_bag import EPISODE_RESULT
-from hexapod_doe.salvage import set_aside
 
 RESULT_TOPIC = 'episode_result'
 

@@ -11,10 +11,10 @@ from array import array
 from pathlib import Path
 
 import pytest
-from hexapod_doe.bag_writer import BagWriter
+from hexapod_doe.bags.bag_writer import BagWriter
+from hexapod_doe.bags.rosbag2 import OfferedQos, Topic
 from hexapod_doe.errors import BagError
 from hexapod_doe.player_node import PlayerNode
-from hexapod_doe.rosbag2 import OfferedQos, Topic
 from hexapod_node.qos import RECORD
 from hexapod_node.raw_topics import subscribe_raw
 from rclpy.parameter import Parameter

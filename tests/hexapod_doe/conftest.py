@@ -12,8 +12,8 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from hexapod_doe.bag_writer import BagWriter
-from hexapod_doe.rosbag2 import Topic
+from hexapod_doe.bags.bag_writer import BagWriter
+from hexapod_doe.bags.rosbag2 import Topic
 
 PERIOD_NS = 25_000_000
 EPISODE_NS = 15_000_000_000

@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hexapod_doe.csv_table import read_csv
-from hexapod_doe.model import AliasedTermsError, estimable_terms
-from hexapod_doe.regression import ols
-from hexapod_doe.terms import terms_up_to
+from hexapod_doe.designs.terms import terms_up_to
+from hexapod_doe.fitting.model import AliasedTermsError, estimable_terms
+from hexapod_doe.fitting.regression import ols
+from hexapod_doe.tables.csv_table import read_csv
 
 from hexapod_doe import analyze
 

@@ -7,8 +7,8 @@ import subprocess
 import sys
 
 import pytest
+from hexapod_doe.designs.plan_file import read_plan
 from hexapod_doe.plan import main
-from hexapod_doe.plan_file import read_plan
 
 
 @pytest.fixture

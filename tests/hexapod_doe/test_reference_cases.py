@@ -17,11 +17,11 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
-from hexapod_doe.elimination import eliminate
-from hexapod_doe.lenth import lenth
-from hexapod_doe.model import CURVATURE, estimable_terms
-from hexapod_doe.pure_error import curvature
-from hexapod_doe.regression import Fit, ols
+from hexapod_doe.fitting.elimination import eliminate
+from hexapod_doe.fitting.lenth import lenth
+from hexapod_doe.fitting.model import CURVATURE, estimable_terms
+from hexapod_doe.fitting.pure_error import curvature
+from hexapod_doe.fitting.regression import Fit, ols
 from scipy import stats
 
 DATA = Path(__file__).parents[1] / 'data' / 'doe_cases'

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 from hexapod_agent.observation import ObservationSpec
-from hexapod_doe.bag import read_run
-from hexapod_doe.plan_file import read_plan
+from hexapod_doe.bags.run_record import read_run
+from hexapod_doe.designs.plan_file import read_plan
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader

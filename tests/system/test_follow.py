@@ -9,8 +9,8 @@ import pytest
 from hexapod_agent.config import AgentConfig
 from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.training import Trainer
-from hexapod_doe.bag import read_run
-from hexapod_doe.follow import read_track
+from hexapod_doe.analysis.follow import read_track
+from hexapod_doe.bags.run_record import read_run
 
 from hexapod_agent import checkpoint
 

@@ -12,8 +12,8 @@ from array import array
 
 import pytest
 import rclpy
-from hexapod_doe.bag import read_run
-from hexapod_doe.salvage import salvage
+from hexapod_doe.bags.run_record import read_run
+from hexapod_doe.bags.salvage import salvage
 from hexapod_interfaces.msg import EpisodeResult
 from hexapod_interfaces.srv import StartRecording
 from hexapod_node.qos import LOCK_STEP

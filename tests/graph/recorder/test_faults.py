@@ -8,8 +8,8 @@ import resource
 import time
 
 import pytest
-from hexapod_doe.bag import find_bags, read_run
-from hexapod_doe.salvage import salvage
+from hexapod_doe.bags.run_record import find_bags, read_run
+from hexapod_doe.bags.salvage import salvage
 from rosbags.highlevel import AnyReader
 
 pytestmark = pytest.mark.graph

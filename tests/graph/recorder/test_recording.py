@@ -4,7 +4,7 @@
 """Sampled episodes, episode results and metadata reach the bag, and nothing before it is time."""
 
 import pytest
-from hexapod_doe.bag import is_complete, read_run, read_topic
+from hexapod_doe.bags.run_record import is_complete, read_run, read_topic
 from hexapod_interfaces.srv import FinishRecording, RecordEpisode
 from hexapod_node.qos import LOCK_STEP
 from rosbags.highlevel import AnyReader

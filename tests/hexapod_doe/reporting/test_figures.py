@@ -8,11 +8,18 @@ from dataclasses import replace
 import matplotlib as mpl
 import numpy as np
 import pytest
-from hexapod_doe.figures import effects, learning, predictions, purchase, residuals, significance
-from hexapod_doe.figures.chart import Chart
-from hexapod_doe.figures.parts import short_alias
-from hexapod_doe.figures.style import NARROW, RC, ROLES, WIDE
-from hexapod_doe.standing import standings
+from hexapod_doe.reporting.figures import (
+    effects,
+    learning,
+    predictions,
+    purchase,
+    residuals,
+    significance,
+)
+from hexapod_doe.reporting.figures.chart import Chart
+from hexapod_doe.reporting.figures.parts import short_alias
+from hexapod_doe.reporting.figures.style import NARROW, RC, ROLES, WIDE
+from hexapod_doe.reporting.standing import standings
 
 
 def _axes(chart: Chart, width: float = WIDE):

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from hexapod_doe.analysis import analyse
-from hexapod_doe.csv_table import read_csv
-from hexapod_doe.figures.chart import Chart
-from hexapod_doe.options import Options
-from hexapod_doe.report import render, sections
+from hexapod_doe.analysis.analysis import analyse
+from hexapod_doe.analysis.options import Options
+from hexapod_doe.reporting.figures.chart import Chart
+from hexapod_doe.reporting.report import render, sections
+from hexapod_doe.tables.csv_table import read_csv
 
 DATA = Path(__file__).parents[2] / 'data' / 'doe_cases'
 VOID = {'meta', 'link', 'br', 'img', 'hr', 'input'}

@@ -3,7 +3,7 @@
 
 """Sets stand by the model that the choice is made from."""
 
-from hexapod_doe.standing import deciding_parts, standings
+from hexapod_doe.reporting.standing import deciding_parts, standings
 
 
 def test_failures_let_the_two_part_model_decide(campaign):

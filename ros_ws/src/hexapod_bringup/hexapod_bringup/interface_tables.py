@@ -20,12 +20,12 @@ import rclpy
 from hexapod_agent.agent_node import AgentNode
 from hexapod_agent.observation import CHANNELS
 from hexapod_cpg.cpg_node import CpgNode
-from hexapod_doe.bag_file import BagFile
-from hexapod_doe.design import fraction
+from hexapod_doe.bags.bag_file import BagFile
+from hexapod_doe.designs.design import fraction
+from hexapod_doe.designs.plan_file import write_plan
+from hexapod_doe.designs.plan_table import make_plan
 from hexapod_doe.manager_node import PARAMETERS as MANAGER_PARAMETERS
 from hexapod_doe.manager_node import ManagerNode
-from hexapod_doe.plan_file import write_plan
-from hexapod_doe.plan_table import make_plan
 from hexapod_doe.player_node import PlayerNode
 from hexapod_doe.recorder_node import RecorderNode
 from hexapod_sim.sim_node import SimNode

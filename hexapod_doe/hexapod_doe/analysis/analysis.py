@@ -1,0 +1,141 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The whole analysis of one table: models, predictions, choice, and what is uncertain in them."""
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from hexapod_doe.analysis.options import Options
+from hexapod_doe.analysis.results import Analysis
+from hexapod_doe.choosing.attribution import alias_safe
+from hexapod_doe.choosing.choice import model_failures
+from hexapod_doe.choosing.conclusions import conclude
+from hexapod_doe.choosing.confirm import confirm
+from hexapod_doe.choosing.estimands import estimand, pseudo_values
+from hexapod_doe.choosing.outlook import final_outlook
+from hexapod_doe.choosing.prediction import predict_all
+from hexapod_doe.fitting.estimate import estimates
+from hexapod_doe.fitting.pipeline import Pipeline, run
+from hexapod_doe.fitting.pure_error import curvature
+from hexapod_doe.fitting.steps import aliases_of, main_effects, removals, step_record
+from hexapod_doe.tables.describe import design_caveats, failure_caveat, model_caveats, summarise
+from hexapod_doe.tables.table import RESPONSE, RunTable, TableError
+
+
+def analyse(
+    tables: Sequence[RunTable],
+    options: Options,
+    confirmation_runs: Mapping[str, Sequence[float]] | None = None,
+) -> Analysis:
+    """Analyse a table; further tables are other designs to compare, with the same options.
+
+    Args:
+        tables: One table for each design.
+        options: The settings.
+        confirmation_runs: Responses of confirmation runs by label, to be judged.
+
+    Raises:
+        TableError: A table does not allow what the options ask for.
+        AliasedTermsError: The named terms cannot be told apart.
+        AnalysisError: An option cannot be read.
+    """
+    options = options.as_article() if options.article else options
+    first, *others = tables
+    compared = tuple(_analyse(other, options, {}) for other in others)
+    return dataclasses.replace(
+        _analyse(first, options, confirmation_runs or {}), compared=compared
+    )
+
+
+def _analyse(
+    table: RunTable, options: Options, confirmation_runs: Mapping[str, Sequence[float]]
+) -> Analysis:
+    rng = np.random.default_rng(options.seed)
+    analysed = _with_estimand(table, options)
+    state = run(analysed, options)
+    base = _modelled(analysed, state, options)
+    failures = model_failures(table, options, rng) if options.estimand == 'mean' else None
+    outlook = final_outlook(state, rng)
+    if failures is not None and not options.article:
+        outlook = failures.outlook
+    analysis = dataclasses.replace(
+        base,
+        table=base.table.assign(failed=False if failures is None else failures.failed),
+        choice=outlook.ranking[0],
+        choice_rule=f'highest expected response by the {outlook.model}',
+        two_part=None if failures is None else failures.record,
+        estimands=estimates(table, options.level, rng),
+        **conclude(table, outlook, options, rng),
+        confirmation=confirm(outlook, options.confirmation, confirmation_runs),
+    )
+    failed = [] if failures is None else [failure_caveat(failures.record)]
+    caveats = (*base.caveats, *failed, *model_caveats(analysis))
+    return dataclasses.replace(analysis, caveats=caveats)
+
+
+def _with_estimand(table: RunTable, options: Options) -> RunTable:
+    if options.estimand == 'mean':
+        return table
+    if options.trim_worst:
+        raise TableError(f'estimand {options.estimand!r} uses all runs: leave out --trim-worst')
+    item = estimand(options.estimand)
+    values = pseudo_values(item, table.values, table.rows['case'])
+    text = (
+        f'The response analysed is the {item.description} of each case ({item.name}), '
+        'as jackknife pseudo-values of the runs.'
+    )
+    return dataclasses.replace(
+        table,
+        rows=table.rows.assign(**{RESPONSE: values}),
+        response=f'{table.response} ({item.name})',
+        caveats=(*table.caveats, text),
+    )
+
+
+def _modelled(table: RunTable, state: Pipeline, options: Options) -> Analysis:
+    """Return the analysis as far as the fitted models go."""
+    aliases = aliases_of(table, state.steps, state.dropped)
+    final = state.steps[-1]
+    predictions = predict_all(
+        final.fit,
+        table.factors,
+        state.transform,
+        options.level,
+        set(table.rows['label']),
+        alias_safe(table.levels, final.fit.terms),
+    )
+    design = summarise(table, aliases)
+    ranking = tuple(p.label for p in sorted(predictions, key=lambda p: p.rank))
+    return Analysis(
+        title=table.title,
+        source=table.source,
+        response=table.response,
+        options=dataclasses.asdict(options),
+        design=design,
+        table=table.rows.assign(kept=state.kept),
+        curves=table.curves,
+        caveats=(*table.caveats, *design_caveats(design), *state.caveats),
+        main_effects=main_effects(table, _error(state)),
+        steps=tuple(step_record(step, aliases) for step in state.steps),
+        elimination=removals(state.dropped, aliases),
+        transform=state.transform,
+        lenth=state.lenth,
+        curvature=curvature(table.levels, table.values),
+        level=options.level,
+        predictions=predictions,
+        ranking=ranking,
+        choice=ranking[0],
+        choice_rule='',
+    )
+
+
+def _error(state: Pipeline) -> float | None:
+    """Return the residual standard deviation of the first model that has one, on all rows."""
+    rows = len(state.table.rows)
+    for step in state.steps:
+        if step.fit.s is not None and step.fit.n == rows and not step.transformed:
+            return step.fit.s
+    return None

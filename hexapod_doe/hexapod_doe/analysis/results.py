@@ -1,0 +1,194 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The record of one analysis: what the report draws and what `analysis.json` holds."""
+
+import dataclasses
+from collections.abc import Mapping
+from typing import Any
+
+import pandas as pd
+
+from hexapod_doe.analysis.findings import (
+    Attribution,
+    Averaging,
+    Confirmation,
+    EstimandResult,
+    Purchase,
+    RankUncertainty,
+    TwoPart,
+)
+from hexapod_doe.fitting.lenth import Lenth
+from hexapod_doe.fitting.pure_error import Curvature, LackOfFit
+from hexapod_doe.fitting.transform import Transform
+
+Interval = tuple[float | None, float | None]
+
+
+@dataclasses.dataclass(frozen=True)
+class DesignSummary:
+    """The design as the rows of the table show it."""
+
+    name: str
+    """What the source calls it, such as `quarter`, or else its size, such as `2^(7-2)`."""
+    factors: tuple[str, ...]
+    factor_names: Mapping[str, str]
+    """Letter to what it switches on, such as `A` to `joint torques`; may be empty."""
+    defining_relation: str
+    resolution: int | None
+    cases: int
+    expected_cases: int
+    """Cases of the regular fraction that the rows span; more than `cases` if some are missing."""
+    missing_cases: tuple[str, ...]
+    runs: int
+    replicates: tuple[int, int]
+    """Fewest and most runs in a case."""
+    centre_points: int
+    aliases: Mapping[str, str]
+    """Each estimable term and its alias string."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Step:
+    """One fitted model. Maps go from term to number; what does not exist is None."""
+
+    name: str
+    """`initial`, `trimmed`, `transformed`, `reduced` or `final`."""
+    description: str
+    scale: str
+    """`response`, or `transformed`: what coef, se, s, sse and residuals are measured in."""
+    n: int
+    terms: tuple[str, ...]
+    aliases: Mapping[str, str]
+    coef: Mapping[str, float]
+    se: Mapping[str, float | None]
+    t: Mapping[str, float | None]
+    p: Mapping[str, float | None]
+    effects: Mapping[str, float]
+    se_effects: Mapping[str, float | None]
+    r2: float | None
+    r2_adj: float | None
+    r2_pred: float | None
+    press: float | None
+    r2_pred_cases: float | None
+    """As r2_pred, leaving out all runs of a case at once."""
+    press_cases: float | None
+    s: float | None
+    df_error: int
+    sse: float
+    sst: float
+    lack_of_fit: LackOfFit | None
+    rows: tuple[int, ...]
+    """Index in `Analysis.table` of each row that was fitted."""
+    response: tuple[float, ...]
+    fitted: tuple[float, ...]
+    residuals: tuple[float, ...]
+    leverage: tuple[float, ...]
+    studentized: tuple[float | None, ...]
+    """Externally studentised residuals; beyond ±3 a row is flagged as an outlier."""
+
+
+@dataclasses.dataclass(frozen=True)
+class MainEffect:
+    """Mean response with and without one factor, on the rows named by `Analysis.main_effects`."""
+
+    factor: str
+    mean_with: float
+    mean_without: float
+    se_mean_with: float | None
+    """Standard deviation within the group over the root of its size."""
+    se_mean_without: float | None
+    effect: float
+    se_effect: float | None
+    """From the first model, 2s/√N; None if that is saturated."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Removal:
+    """One step of the backward elimination."""
+
+    step: int
+    term: str
+    alias: str
+    p: float
+    s: float
+    r2: float | None
+    r2_adj: float | None
+    """s, R² and adjusted R² of the model without the term."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Prediction:
+    """One of the 2^k combinations, in original units; a bound outside the transform is None."""
+
+    label: str
+    levels: Mapping[str, int]
+    fit: float
+    ci: Interval
+    """Confidence interval of the mean (of the median after a transform)."""
+    pi: Interval
+    """Prediction interval of one new run."""
+    se: float | None
+    """Standard error of the fit on the fitted scale."""
+    rank: int
+    """1 is best; ties share the order of the table of combinations."""
+    tested: bool
+    """Whether the combination was run."""
+    alias_safe: bool
+    """Whether the fit is the same whichever of its aliases each term is named after."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Analysis:
+    """Everything that one campaign was found to say."""
+
+    title: str
+    source: str
+    response: str
+    options: Mapping[str, Any]
+    """The settings of the command line, defaults filled in."""
+    design: DesignSummary
+    table: pd.DataFrame
+    """One row per run: run_id, case, replicate, run_order, label, factors, response, kept
+    (False where trimmed), failed."""
+    curves: pd.DataFrame
+    """Learning curves: run_id, label, case, replicate, episode, return, average; may be empty."""
+    caveats: tuple[str, ...]
+    """What a reader must know before believing the numbers, in full sentences."""
+    main_effects: tuple[MainEffect, ...]
+    """On all rows, before trimming."""
+    steps: tuple[Step, ...]
+    """In order; the last one is the final model, from which the predictions come."""
+    elimination: tuple[Removal, ...]
+    transform: Transform | None
+    lenth: Lenth | None
+    """For unreplicated designs: which effects stand out without an estimate of error."""
+    curvature: Curvature | None
+    level: float
+    """Confidence of every interval, such as 0.9."""
+    predictions: tuple[Prediction, ...]
+    """All 2^k combinations in Yates order."""
+    ranking: tuple[str, ...]
+    """Labels of the combinations, best fit first."""
+    choice: str
+    """Label of the recommended combination."""
+    choice_rule: str
+    """Why that one, in a sentence."""
+    estimands: tuple[EstimandResult, ...] = ()
+    two_part: TwoPart | None = None
+    rank_uncertainty: RankUncertainty | None = None
+    attribution: Attribution | None = None
+    averaging: Averaging | None = None
+    confirmation: Confirmation | None = None
+    purchase: Purchase | None = None
+    compared: tuple['Analysis', ...] = ()
+    """Other designs over the same factors, analysed with the same options."""
+
+    @property
+    def final(self) -> Step:
+        """The final model."""
+        return self.steps[-1]
+
+    def ranked(self) -> tuple[Prediction, ...]:
+        """Return the predictions, best first."""
+        return tuple(sorted(self.predictions, key=lambda prediction: prediction.rank))

@@ -1,0 +1,34 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Which bags there are in a folder, and which of them are complete."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from hexapod_doe.bags.bag_file import BagFile
+from hexapod_doe.bags.rosbag2 import METADATA_FILE, is_unfinished
+from hexapod_doe.bags.run_bag import COMPLETE, EPISODE_RESULT
+from hexapod_doe.errors import BagError
+
+
+def is_complete(bag: str | Path) -> bool:
+    """Whether the bag is closed, sound, and holds every episode that its run was to have."""
+    try:
+        file = BagFile(Path(bag))
+        metadata = file.run_metadata()
+        recorded = file.counts[file.topic_of_type(EPISODE_RESULT)]
+    except BagError:
+        return False
+    return metadata.get('status') == COMPLETE and str(recorded) == metadata.get('episodes')
+
+
+def find_bags(path: str | Path) -> list[Path]:
+    """Return the closed bags at and below a folder, sorted by path."""
+    root = Path(path)
+    if not root.is_dir():
+        raise BagError(f'{root}: no such directory, expected a folder with bags')
+    return sorted(
+        file.parent for file in root.rglob(METADATA_FILE) if not is_unfinished(file.parent)
+    )

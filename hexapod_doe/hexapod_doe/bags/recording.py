@@ -1,0 +1,191 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The bag of one run while the run lasts: episode results throughout, all topics in samples.
+
+Messages are logged, and marked as published, at their own simulated stamp and not at the wall
+clock: two runs of one seed then give the same bag whatever machine they ran on, and a period is
+the same instant on every topic. A type without a stamp is logged at the newest stamp so far.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+
+from hexapod_doe.bags.bag_writer import BagWriter
+from hexapod_doe.bags.cdr import stamp_ns
+from hexapod_doe.bags.completeness import EpisodeTally, describe
+from hexapod_doe.bags.rosbag2 import Topic
+from hexapod_doe.bags.run_bag import COMPLETE, RECORDING
+from hexapod_doe.bags.schema import is_stamped
+from hexapod_doe.errors import BagError
+
+
+class Recording:
+    """One run's bag, open.
+
+    Attributes:
+        run_id: of the run; results of other runs are not its own.
+        results: episodes whose result is in the bag.
+        incomplete: one line for each fault found in a sampled episode.
+    """
+
+    def __init__(
+        self, run_id: str, bag: Path, metadata: Mapping[str, str], period_ns: int
+    ) -> None:
+        """Open the bag.
+
+        Args:
+            run_id: of the run.
+            bag: directory that the bag will have when it is complete.
+            metadata: stored in the bag at once.
+            period_ns: control period; 0 where samples keep no common grid.
+
+        Raises:
+            BagError: the bag cannot be opened.
+        """
+        self.run_id = run_id
+        self.results: set[int] = set()
+        self.incomplete: list[str] = []
+        self._period_ns = period_ns
+        self._newest_ns = 0
+        self._tally: EpisodeTally | None = None
+        self._sampled: dict[int, int] = {}  # control periods by episode
+        self._episode = 0
+        self._stamped: set[str] = set()
+        own = {'run_id': run_id, 'status': RECORDING, 'recording_began': _now()}
+        self._writer = BagWriter(bag, {**metadata, **own})
+
+    @property
+    def bag(self) -> Path:
+        """Directory that the bag will have when it is complete."""
+        return self._writer.bag
+
+    @property
+    def messages(self) -> int:
+        """Messages in the bag."""
+        return self._writer.extent.messages
+
+    def add_result(self, topic: Topic, data: bytes, episode: int, steps: int) -> bool:
+        """Store the result of an episode and make the bag safe up to here.
+
+        Args:
+            topic: that it came on.
+            data: the message, serialised.
+            episode: its number.
+            steps: control periods that it lasted.
+
+        Returns:
+            Whether it is new; a second result of an episode is not stored.
+
+        Raises:
+            BagError: the disk refuses.
+        """
+        if episode in self.results:
+            return False
+        self.results.add(episode)
+        self._writer.add_topic(topic)
+        self._writer.write(topic.name, data, stamp_ns(data))
+        self._writer.flush()
+        periods = self._sampled.get(episode, steps)
+        if self._period_ns and periods != steps:
+            self.incomplete.append(f'episode {episode}: {periods} of {steps} periods recorded')
+        return True
+
+    def begin_sample(self, episode: int, topics: Iterable[Topic]) -> None:
+        """Begin to record every topic.
+
+        Raises:
+            BagError: a topic's type is not installed, or changed.
+        """
+        topics = tuple(topics)
+        for topic in topics:
+            self._writer.add_topic(topic)
+        self._stamped = {topic.name for topic in topics if is_stamped(topic.type_name)}
+        types = {topic.name: topic.type_name for topic in topics if topic.name in self._stamped}
+        self._tally = EpisodeTally(types, self._period_ns)
+        self._episode = episode
+
+    def add_sample(self, topic: str, data: bytes) -> None:
+        """Store one message of the sampled episode.
+
+        Raises:
+            BagError: the disk refuses.
+        """
+        if self._tally is None:
+            return
+        if topic in self._stamped:
+            time_ns = stamp_ns(data)
+            self._tally.add(topic, time_ns)
+            self._newest_ns = max(self._newest_ns, time_ns)
+        else:
+            time_ns = self._newest_ns
+        self._writer.write(topic, data, time_ns)
+
+    @property
+    def sampling(self) -> bool:
+        """Whether an episode is being recorded."""
+        return self._tally is not None
+
+    def waiting(self, last_ns: int) -> list[str]:
+        """Return the topics that have yet to deliver their sample of the episode's end."""
+        return self._tally.waiting(last_ns) if self._tally else []
+
+    def end_sample(self, last_ns: int) -> list[str]:
+        """End the sampled episode at a stamp; return one line for each fault.
+
+        Raises:
+            BagError: the disk refuses.
+        """
+        if self._tally is None:
+            return []
+        faults = describe(self._episode, self._tally.verdicts(last_ns))
+        self._sampled[self._episode] = self._tally.periods(last_ns)
+        self.incomplete += faults
+        self._tally = None
+        self._writer.flush()
+        return faults
+
+    def lacking(self, episodes: int) -> list[int]:
+        """Return which of so many episodes have no result yet."""
+        return sorted(set(range(episodes)) - self.results)
+
+    def finish(self, episodes: int, metadata: Mapping[str, str]) -> Path:
+        """Close the bag and return it.
+
+        Raises:
+            BagError: an episode lacks its result, so the bag keeps its unfinished name; or the
+                disk refuses.
+        """
+        lacking = self.lacking(episodes)
+        if lacking:
+            raise BagError(
+                f'run {self.run_id}: {episodes - len(lacking)} of {episodes} episode results '
+                f'recorded, episode {lacking[0]} is the first to lack; '
+                f'the bag stays {self.abandon()}'
+            )
+        self._note(metadata, COMPLETE, episodes)
+        return self._writer.close()
+
+    def abandon(self) -> Path:
+        """End the file as it is, so that it can be read; the bag keeps its unfinished name."""
+        self._note({}, RECORDING, len(self.results))
+        return self._writer.abandon()
+
+    def _note(self, metadata: Mapping[str, str], status: str, episodes: int) -> None:
+        counts = self._writer.extent.counts
+        self._writer.metadata |= {
+            **metadata,
+            'status': status,
+            'episodes': str(episodes),
+            'sampled_episodes': ' '.join(map(str, sorted(self._sampled))),
+            'counts': '\n'.join(f'{topic} {count}' for topic, count in sorted(counts.items())),
+            'incomplete': '\n'.join(self.incomplete),
+            'recording_ended': _now(),
+        }
+
+
+def _now() -> str:
+    return datetime.now(UTC).isoformat(timespec='seconds')

@@ -1,0 +1,90 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Reads bags without ROS: a run's metadata and episodes, and any topic's messages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from hexapod_doe.bags.bag_file import BagFile
+from hexapod_doe.bags.bag_state import find_bags, is_complete
+from hexapod_doe.bags.run_bag import EPISODE_RESULT
+from hexapod_doe.errors import BagError
+
+__all__ = ['RunRecord', 'find_bags', 'is_complete', 'read_run', 'read_topic']
+
+_SCALARS = (
+    'episode',
+    'steps',
+    'episode_return',
+    'average_return',
+    'terminated',
+    'cause',
+    'critic_loss',
+    'actor_loss',
+    'mean_q',
+    'saturated_share',
+    'updates',
+    'late',
+    'missing',
+    'duplicate',
+    'out_of_order',
+)
+
+
+@dataclass(frozen=True)
+class RunRecord:
+    """What the analysis needs of one run."""
+
+    run_id: str
+    metadata: dict[str, str]
+    """Design row, seed, parameters, versions, and what the recorder found."""
+    episodes: pd.DataFrame
+    """A row per episode, by its number: the fields of EpisodeResult, reward terms as `term_*`."""
+
+
+def read_run(bag: str | Path) -> RunRecord:
+    """Read a run's bag.
+
+    Raises:
+        BagError: missing, unfinished, cut, empty, or not a bag of a run.
+    """
+    file = BagFile(Path(bag))
+    metadata = file.run_metadata()
+    results = [decoded for _, decoded in file.decoded(file.topic_of_type(EPISODE_RESULT))]
+    if not results:
+        raise BagError(f'bag {bag}: empty, expected at least one episode result')
+    episodes = pd.DataFrame([_episode_row(result) for result in results])
+    episodes = episodes.drop_duplicates('episode').set_index('episode').sort_index()
+    return RunRecord(metadata['run_id'], metadata, episodes)
+
+
+def read_topic(bag: str | Path, topic: str) -> Iterator[tuple[int, Any]]:
+    """Yield (time [ns], decoded message) of one topic, in the order of time.
+
+    Args:
+        bag: a rosbag2 directory with MCAP storage, ours or not.
+        topic: the full name, or its end where only one topic ends so ('imu/data').
+
+    Raises:
+        BagError: the bag cannot be read, or has no such topic.
+    """
+    file = BagFile(Path(bag))
+    yield from file.decoded(file.topic(topic))
+
+
+def _episode_row(result: Any) -> dict[str, Any]:
+    row = {name: getattr(result, name) for name in _SCALARS}
+    terms = zip(result.term_names, result.term_values, strict=True)
+    stamp = result.header.stamp
+    return (
+        row
+        | {f'term_{name}': value for name, value in terms}
+        | {'stamp_ns': stamp.sec * 1_000_000_000 + stamp.nanosec}
+    )

@@ -1,0 +1,137 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Recovers what a recording held when its process, its disk or its machine failed.
+
+MCAP is written in chunks that stand for themselves, so everything up to the last whole chunk can
+be read. The result is a rosbag2 directory that any reader opens, but never a complete run.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import itertools
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import BinaryIO
+
+from mcap.records import Channel, McapRecord, Message, Metadata, Schema
+from mcap.stream_reader import StreamReader
+
+from hexapod_doe.bags.bag_file import DAMAGE
+from hexapod_doe.bags.bag_state import is_complete
+from hexapod_doe.bags.bag_writer import BagWriter
+from hexapod_doe.bags.rosbag2 import Topic, offered_qos, partial_path
+from hexapod_doe.bags.run_bag import RUN_RECORD, SALVAGED
+from hexapod_doe.errors import BagError
+
+
+def salvage(bag: str | Path) -> Path:
+    """Write what is whole in `<bag>.partial` to `<bag>.salvaged` and return that.
+
+    The unfinished bag stays as it is.
+
+    Raises:
+        BagError: it is missing or still being written, or holds no whole chunk.
+    """
+    bag = Path(bag)
+    copy = _Copy(bag.with_name(f'{bag.name}.{SALVAGED}'))
+    with _exclusive(bag) as stream:
+        for record in whole_records(stream):
+            copy.take(record)
+    if copy.writer is None:
+        raise BagError(f'bag {bag}: nothing to salvage, expected at least one whole chunk')
+    copy.writer.metadata = copy.metadata | {'status': SALVAGED}
+    return copy.writer.close()
+
+
+def set_aside(bag: str | Path) -> Path | None:
+    """Rename what is left of an earlier recording to `<bag>.cut_<n>`, so the run can be repeated.
+
+    That is an unfinished `<bag>.partial`, or a `<bag>` that is damaged or incomplete. A complete
+    bag stays, and so does a directory that never was a bag of that name.
+
+    Returns:
+        The new name, or None where there is nothing to set aside.
+
+    Raises:
+        BagError: it is still being written.
+    """
+    bag = Path(bag)
+    names = (bag.with_name(f'{bag.name}.cut_{n}') for n in itertools.count(1))
+    aside = None
+    if partial_path(bag).is_dir():
+        with _exclusive(bag):
+            aside = partial_path(bag).rename(next(name for name in names if not name.exists()))
+    if _file(bag, bag).is_file() and not is_complete(bag):
+        aside = bag.rename(next(name for name in names if not name.exists()))
+    return aside
+
+
+def whole_records(stream: BinaryIO) -> Iterator[McapRecord]:
+    """Yield the records of an MCAP file up to the first that is cut or fails its checksum."""
+    records = StreamReader(stream, validate_crcs=True).records
+    while True:
+        try:
+            record = next(records)
+        except (StopIteration, *DAMAGE):
+            return
+        yield record
+
+
+class _Copy:
+    """Puts recovered records into a new bag, which is opened when the first message comes."""
+
+    def __init__(self, target: Path) -> None:
+        self.target = target
+        self.metadata: dict[str, str] = {}
+        self.writer: BagWriter | None = None
+        self._schemas: dict[int, Schema] = {}
+        self._channels: dict[int, Channel] = {}
+
+    def take(self, record: McapRecord) -> None:
+        match record:
+            case Metadata(name=name) if name == RUN_RECORD:
+                self.metadata.update(record.metadata)
+            case Schema():
+                self._schemas[record.id] = record
+            case Channel():
+                self._channels[record.id] = record
+            case Message():
+                self._write(record)
+
+    def _write(self, message: Message) -> None:
+        if self.writer is None:
+            self.writer = BagWriter(self.target, self.metadata)
+        channel = self._channels[message.channel_id]
+        if channel.topic not in self.writer.extent.counts:
+            self.writer.add_topic(_topic(channel, self._schemas[channel.schema_id]))
+        self.writer.write(channel.topic, message.data, message.log_time, message.publish_time)
+
+
+def _topic(channel: Channel, schema: Schema) -> Topic:
+    return Topic(
+        channel.topic,
+        schema.name,
+        offered_qos(channel.metadata.get('offered_qos_profiles', '')),
+        definition=schema.data.decode(),
+        type_hash=channel.metadata.get('topic_type_hash', ''),
+    )
+
+
+def _file(directory: Path, bag: Path) -> Path:
+    return directory / f'{bag.name}_0.mcap'
+
+
+@contextmanager
+def _exclusive(bag: Path) -> Iterator[BinaryIO]:
+    path = _file(partial_path(bag), bag)
+    try:
+        with path.open('rb') as stream:
+            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            yield stream
+    except FileNotFoundError as error:
+        raise BagError(f'bag {bag}: no {path}, expected an unfinished recording') from error
+    except BlockingIOError as error:
+        raise BagError(f'bag {bag}: {path.parent} is still being written') from error

@@ -1,0 +1,126 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Which predictions, and which winner, depend on the name given to a confounded effect.
+
+A fitted coefficient belongs to a whole alias set. Naming it after another member gives the same
+fit to every run and another prediction wherever the two columns differ.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from itertools import product
+from math import prod
+
+import numpy as np
+import pandas as pd
+
+from hexapod_doe.analysis.findings import Attribution
+from hexapod_doe.choosing.prediction import rank_descending
+from hexapod_doe.designs.terms import CONSTANT, column, order, terms_up_to
+from hexapod_doe.fitting.model import corners, is_curvature, labels, model_matrix
+
+MAX_EXAMINED = 4096
+"""More namings than this are sampled."""
+
+Candidates = Mapping[str, tuple[tuple[str, int], ...]]
+
+
+def candidates(levels: pd.DataFrame, terms: Sequence[str]) -> Candidates:
+    """Return for each ambiguous term its aliases (itself first) and their signs.
+
+    Aliases up to the term's own order, two at least, are considered: an effect of higher order
+    is less likely than the one that was named.
+    """
+    factors = ''.join(levels.columns)
+    cases = levels[(levels != 0).all(axis=1)].drop_duplicates().to_numpy(float)
+    found = {}
+    for term in terms:
+        if term == CONSTANT or is_curvature(term, factors):
+            continue
+        own = column(cases, factors, term)
+        others = (
+            (other, int(own[0] * values[0]))
+            for other in terms_up_to(factors, max(2, order(term)))
+            if other != term
+            and np.array_equal(abs(own @ (values := column(cases, factors, other))), len(cases))
+        )
+        aliases = ((term, 1), *others)
+        if len(aliases) > 1:
+            found[term] = aliases
+    return found
+
+
+def alias_safe(levels: pd.DataFrame, terms: Sequence[str]) -> np.ndarray:
+    """Tell for each of the 2^k combinations whether no naming changes its prediction (2^k,)."""
+    points = corners(list(levels.columns))
+    safe = np.ones(len(points), dtype=bool)
+    for aliases in candidates(levels, terms).values():
+        names, signs = zip(*aliases, strict=True)
+        columns = model_matrix(points, names) * signs
+        safe &= (columns == columns[:, :1]).all(axis=1)
+    return safe
+
+
+def attribute(
+    levels: pd.DataFrame,
+    terms: Sequence[str],
+    coef: np.ndarray,
+    value: Callable[[np.ndarray], np.ndarray],
+    rng: np.random.Generator,
+) -> Attribution:
+    """Predict all combinations under each naming of the model's ambiguous terms.
+
+    Args:
+        levels: Coded levels of the runs.
+        terms: Terms of the model (p).
+        coef: Their coefficients (p,).
+        value: Maps linear predictors (2^k,) to what the combinations are ranked by.
+        rng: For a sample of the namings, where there are too many.
+    """
+    ambiguous = candidates(levels, terms)
+    grid = corners(list(levels.columns))
+    names = labels(grid)
+    clear = [i for i, term in enumerate(terms) if term not in ambiguous]
+    base = model_matrix(grid, terms)[:, clear] @ coef[clear]
+    parts = [
+        coef[terms.index(term)]
+        * (model_matrix(grid, [t for t, _ in group]) * [s for _, s in group])
+        for term, group in ambiguous.items()
+    ]
+    choices = _namings([part.shape[1] for part in parts], rng)
+    fits = np.array(
+        [
+            value(base + sum(part[:, j] for part, j in zip(parts, choice, strict=True)))
+            for choice in choices
+        ]
+    )
+    ranks = np.array([rank_descending(row) for row in fits])
+    winners = Counter(names[i] for i in ranks.argmin(axis=1))
+    return Attribution(
+        ambiguous={term: tuple(t for t, _ in group) for term, group in ambiguous.items()},
+        attributions=prod(part.shape[1] for part in parts),
+        examined=len(choices),
+        winners=dict(winners.most_common()),
+        rank_range={
+            name: (int(a), int(b))
+            for name, a, b in zip(names, ranks.min(axis=0), ranks.max(axis=0), strict=True)
+        },
+        fit_range={
+            name: (float(a), float(b))
+            for name, a, b in zip(names, fits.min(axis=0), fits.max(axis=0), strict=True)
+        },
+        safe=tuple(
+            name for name, safe in zip(names, alias_safe(levels, terms), strict=True) if safe
+        ),
+    )
+
+
+def _namings(sizes: Sequence[int], rng: np.random.Generator) -> np.ndarray:
+    """Return the choice of a name for each ambiguous term, one naming a row."""
+    total = prod(sizes)
+    if total <= MAX_EXAMINED:
+        return np.array(list(product(*map(range, sizes))), dtype=int).reshape(total, len(sizes))
+    sample = rng.integers(0, sizes, (MAX_EXAMINED, len(sizes)))
+    sample[0] = 0  # the naming that was fitted
+    return sample

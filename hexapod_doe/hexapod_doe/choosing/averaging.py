@@ -1,0 +1,180 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Predictions averaged over models, so that neither a selection nor a name is taken for certain.
+
+A Gibbs sampler walks over the models of main effects and two-factor interactions, aliases
+included as alternatives, by exp(−BIC/2) times a prior that favours interactions of active
+parents (Chipman, Hamada and Wu, Technometrics 39, 1997).
+"""
+
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
+
+import numpy as np
+import pandas as pd
+from scipy import linalg
+
+from hexapod_doe.analysis.findings import Averaging, Estimate
+from hexapod_doe.choosing.draws import interval_of
+from hexapod_doe.choosing.prediction import rank_descending
+from hexapod_doe.designs.terms import CONSTANT, order, terms_up_to
+from hexapod_doe.fitting.model import corners, labels, model_matrix, parents
+
+P_MAIN = 0.5
+P_INTERACTION = (0.01, 0.10, 0.25)
+"""Prior probability of an interaction with none, one or both parents active."""
+SWEEPS, BURN_IN = 400, 50
+_SHOWN = 10
+
+
+class ModelSpace:
+    """The models over some runs: their likelihood, their prior, and what they predict."""
+
+    def __init__(self, levels: pd.DataFrame, response: np.ndarray) -> None:
+        """Rotate the problem onto the columns of all terms."""
+        self.factors = ''.join(map(str, levels.columns))
+        self.terms = terms_up_to(self.factors, 2)
+        matrix = model_matrix(levels, [CONSTANT, *self.terms])
+        q, self.r = linalg.qr(matrix, mode='economic')
+        self.rotated = q.T @ response
+        rest = response - q @ self.rotated
+        self.outside = float(rest @ rest)
+        self.rows = len(response)
+        self.floor = 1e-12 * float(((response - response.mean()) ** 2).sum())
+        columns = matrix[:, 1:]
+        self.alike = np.abs(columns.T @ columns) > (columns**2).sum(axis=0) - 1e-6
+        np.fill_diagonal(self.alike, False)
+        self._scores: dict[bytes, float] = {}
+
+    @cached_property
+    def _parents(self) -> list[list[int]]:
+        index = {term: i for i, term in enumerate(self.terms)}
+        return [[index[parent] for parent in parents(term)] for term in self.terms]
+
+    def score(self, active: np.ndarray) -> float:
+        """Return the log posterior of a model up to a constant."""
+        key = active.tobytes()
+        if key not in self._scores:
+            self._scores[key] = self._score(active)
+        return self._scores[key]
+
+    def _score(self, active: np.ndarray) -> float:
+        size = int(active.sum()) + 1
+        if 2 * size > self.rows or (self.alike[np.ix_(active, active)]).any():
+            return -np.inf
+        _, sse, _ = self.solve(active)
+        bic = self.rows * np.log(max(sse, self.floor) / self.rows) + size * np.log(self.rows)
+        return float(self._log_prior(active) - bic / 2)
+
+    def _log_prior(self, active: np.ndarray) -> float:
+        total = 0.0
+        for i, term in enumerate(self.terms):
+            chance = P_MAIN
+            if order(term) == 2:
+                chance = P_INTERACTION[int(active[self._parents[i]].sum())]
+            total += np.log(chance if active[i] else 1 - chance)
+        return total
+
+    def solve(self, active: np.ndarray) -> tuple[np.ndarray, float, np.ndarray]:
+        """Return coefficients, error sum of squares and R⁻¹ of a model with the constant."""
+        q, r = linalg.qr(self.r[:, np.concatenate([[True], active])], mode='economic')
+        projected = q.T @ self.rotated
+        rest = self.rotated - q @ projected
+        inverse = linalg.solve_triangular(r, np.eye(len(r)))
+        return inverse @ projected, self.outside + float(rest @ rest), inverse
+
+
+def average(
+    levels: pd.DataFrame,
+    response: np.ndarray,
+    spread: Callable[[np.ndarray], np.ndarray],
+    level: float,
+    rng: np.random.Generator,
+) -> Averaging:
+    """Average the values of all combinations over the models.
+
+    Args:
+        levels: Coded levels of the rows.
+        response: Response that the models explain (n,).
+        spread: Maps draws of the linear predictor to draws of the values (draws, 2^k).
+        level: Confidence of the intervals.
+        rng: For the sampler.
+    """
+    space = ModelSpace(levels, response)
+    grid = corners(list(levels.columns))
+    points = model_matrix(grid, [CONSTANT, *space.terms])
+    visited: Counter[bytes] = Counter()
+    draws = []
+    active = np.zeros(len(space.terms), dtype=bool)
+    for sweep in range(BURN_IN + SWEEPS):
+        _gibbs_sweep(space, active, rng)
+        if sweep >= BURN_IN:
+            visited[active.tobytes()] += 1
+            draws.append(_draw(space, active, points, rng))
+    return _summarise(space, visited, spread(np.array(draws)), labels(grid), level)
+
+
+def _gibbs_sweep(space: ModelSpace, active: np.ndarray, rng: np.random.Generator) -> None:
+    """Flip each term by its conditional probability, then exchange aliases."""
+    for i in rng.permutation(len(active)):
+        active[i] = False
+        without = space.score(active)
+        active[i] = True
+        active[i] = rng.random() < _chance(space.score(active), without)
+    for i in np.flatnonzero(active & space.alike.any(axis=0)):
+        group = [i, *np.flatnonzero(space.alike[i])]
+        scores = []
+        for j in group:
+            active[group] = False
+            active[j] = True
+            scores.append(space.score(active))
+        weights = np.exp(np.array(scores) - max(scores))
+        active[group] = False
+        active[rng.choice(group, p=weights / weights.sum())] = True
+
+
+def _chance(with_: float, without: float) -> float:
+    if with_ == -np.inf:
+        return 0.0
+    return float(1 / (1 + np.exp(np.clip(without - with_, -700, 700))))
+
+
+def _draw(
+    space: ModelSpace, active: np.ndarray, points: np.ndarray, rng: np.random.Generator
+) -> np.ndarray:
+    coef, sse, inverse = space.solve(active)
+    s = np.sqrt(max(sse, space.floor) / rng.chisquare(space.rows - len(coef)))
+    drawn = coef + s * inverse @ rng.standard_normal(len(coef))
+    return points[:, np.concatenate([[True], active])] @ drawn
+
+
+def _summarise(
+    space: ModelSpace,
+    visited: Mapping[bytes, int],
+    draws: np.ndarray,
+    names: Sequence[str],
+    level: float,
+) -> Averaging:
+    total = sum(visited.values())
+    models = {key: np.frombuffer(key, dtype=bool) for key in visited}
+    shares = {key: count / total for key, count in visited.items()}
+    heaviest = sorted(shares, key=lambda key: -shares[key])[:_SHOWN]
+    p_active = np.sum([shares[key] * models[key] for key in visited], axis=0)
+    fits = draws.mean(axis=0)
+    low, high = interval_of(draws, level)
+    ranking = [names[i] for i in np.argsort(rank_descending(fits))]
+    return Averaging(
+        models=len(visited),
+        weights=tuple(
+            (tuple(np.array(space.terms)[models[key]].tolist()), shares[key]) for key in heaviest
+        ),
+        p_active=dict(zip(space.terms, map(float, p_active), strict=True)),
+        predictions={
+            name: Estimate(float(fits[i]), (float(low[i]), float(high[i])))
+            for i, name in enumerate(names)
+        },
+        ranking=tuple(ranking),
+        choice=ranking[0],
+    )

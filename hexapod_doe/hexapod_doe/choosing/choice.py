@@ -1,0 +1,97 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The recommended combination, by the two-part model where runs failed, and its record."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hexapod_doe.analysis.findings import Estimate, TwoPart
+from hexapod_doe.analysis.options import Options
+from hexapod_doe.choosing.draws import draw_count, interval_of
+from hexapod_doe.choosing.failure import Threshold, failure_threshold
+from hexapod_doe.choosing.outlook import Outlook, two_part_outlook
+from hexapod_doe.choosing.two_part import Parts, fit_parts, select_parts
+from hexapod_doe.fitting.model import corners, labels
+from hexapod_doe.tables.table import RunTable
+
+
+@dataclass(frozen=True)
+class Failures:
+    """The failures of a campaign, modelled."""
+
+    record: TwoPart
+    outlook: Outlook
+    failed: np.ndarray
+    """Which rows failed (n,)."""
+
+
+def model_failures(table: RunTable, options: Options, rng: np.random.Generator) -> Failures | None:
+    """Model the failures; None if no run failed by the rule, or too few to be modelled."""
+    case = table.rows['case'].to_numpy()
+    threshold = failure_threshold(table.values, case, options.failure_threshold)
+    if threshold is None:
+        return None
+    stated = fit_parts(table, threshold.value)
+    if stated is None:
+        return None
+    selected = select_parts(table, stated, threshold.value, options.alpha)
+    outlook = two_part_outlook(selected, stated, rng)
+    record = _record(table, threshold, stated, selected, outlook, options.level, rng)
+    return Failures(record, outlook, table.values < threshold.value)
+
+
+def _record(
+    table: RunTable,
+    threshold: Threshold,
+    stated: Parts,
+    selected: Parts,
+    outlook: Outlook,
+    level: float,
+    rng: np.random.Generator,
+) -> TwoPart:
+    names = labels(corners(table.factors))
+    pi, mu, expected = stated.point()
+    draws = stated.draw(draw_count(len(names)), rng)
+    run_low, run_high = interval_of(draws.future_mean(1, rng), level)
+    error = np.sqrt(np.diag(stated.failure.covariance))
+    failed_rows = table.values < threshold.value
+    failed = table.rows['label'][failed_rows]
+
+    def estimates(fits: np.ndarray, drawn: np.ndarray) -> dict[str, Estimate]:
+        low, high = interval_of(drawn, level)
+        return {
+            name: Estimate(float(fits[i]), (float(low[i]), float(high[i])))
+            for i, name in enumerate(names)
+        }
+
+    return TwoPart(
+        threshold=threshold.value,
+        threshold_rule=threshold.rule,
+        runs=len(table.rows),
+        failures=len(failed),
+        failures_by_case={
+            str(label): int((failed == label).sum()) for label in table.rows['label'].unique()
+        },
+        cases_without_success=tuple(
+            sorted(set(table.rows['label']) - set(table.rows['label'][~failed_rows]))
+        ),
+        failure_terms=stated.failure_terms,
+        failure_coef=dict(zip(stated.failure_terms, map(float, stated.failure.coef), strict=True)),
+        failure_se=dict(zip(stated.failure_terms, map(float, error), strict=True)),
+        success_terms=stated.success.terms,
+        success_coef=dict(zip(stated.success.terms, map(float, stated.success.coef), strict=True)),
+        mean_failed=float(stated.failed.mean()),
+        p_failure=estimates(pi, draws.pi),
+        reward_success=estimates(mu, draws.mu),
+        expected=estimates(expected, draws.expected),
+        run_interval={
+            name: (float(run_low[i]), float(run_high[i])) for i, name in enumerate(names)
+        },
+        selected_failure_terms=selected.failure_terms,
+        selected_success_terms=selected.success.terms,
+        selected=dict(zip(names, map(float, outlook.fits), strict=True)),
+        ranking=outlook.ranking,
+        choice=outlook.ranking[0],
+    )

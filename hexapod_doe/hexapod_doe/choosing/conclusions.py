@@ -1,0 +1,53 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""What follows from the chosen model: rank uncertainty, attribution, averaging, purchase."""
+
+from typing import TypedDict
+
+import numpy as np
+
+from hexapod_doe.analysis.findings import Attribution, Averaging, Purchase, RankUncertainty
+from hexapod_doe.analysis.options import Options
+from hexapod_doe.choosing.attribution import attribute
+from hexapod_doe.choosing.averaging import average
+from hexapod_doe.choosing.devices import read_devices
+from hexapod_doe.choosing.outlook import Outlook
+from hexapod_doe.choosing.purchase import purchase
+from hexapod_doe.choosing.ranks import rank_uncertainty
+from hexapod_doe.tables.table import RunTable
+
+
+class Conclusions(TypedDict):
+    """Fields of the analysis that this module fills."""
+
+    rank_uncertainty: RankUncertainty | None
+    attribution: Attribution
+    averaging: Averaging
+    purchase: Purchase | None
+
+
+def conclude(
+    table: RunTable,
+    outlook: Outlook,
+    options: Options,
+    rng: np.random.Generator,
+) -> Conclusions:
+    """Draw the conclusions of the model that the choice is made from.
+
+    Raises:
+        AnalysisError: The device table cannot be read, or does not yield a factor.
+    """
+    return Conclusions(
+        rank_uncertainty=rank_uncertainty(outlook, options.level),
+        attribution=attribute(table.levels, outlook.terms, outlook.coef, outlook.value, rng),
+        averaging=average(outlook.levels, outlook.response, outlook.spread, options.level, rng),
+        purchase=_purchase(table, outlook, options),
+    )
+
+
+def _purchase(table: RunTable, outlook: Outlook, options: Options) -> Purchase | None:
+    """Price the sets, if a device table is given or the default one fits the factors."""
+    devices = read_devices(options.devices)
+    meant = options.devices is not None or set(table.factors) == devices.letters
+    return purchase(outlook, devices, options.level, options.delta) if meant else None

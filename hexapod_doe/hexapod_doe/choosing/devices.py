@@ -1,0 +1,84 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The table of purchasable devices, and the cheapest ones that yield a set of observations."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, fields
+from importlib.resources import files
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from hexapod_doe.analysis.findings import Device
+from hexapod_doe.errors import AnalysisError
+
+
+@dataclass(frozen=True)
+class DeviceTable:
+    """Devices and what counts as not worse."""
+
+    devices: tuple[Device, ...]
+    currency: str
+    delta_share: float
+    """Share of the best predicted reward within which a set is not worse."""
+    confidence: float
+
+    @property
+    def letters(self) -> set[str]:
+        """Every observation that some device yields."""
+        return set(''.join(device.yields for device in self.devices))
+
+    def cheapest(self, letters: Iterable[str]) -> tuple[Device, ...]:
+        """Return the cheapest devices that yield all the letters; the fewest on a tie.
+
+        Raises:
+            AnalysisError: No device yields one of the letters.
+        """
+        wanted = set(letters)
+        if missing := sorted(wanted - self.letters):
+            raise AnalysisError(
+                f'no device yields {missing[0]!r}, expected one in the device table'
+            )
+        useful = [device for device in self.devices if wanted & set(device.yields)]
+        sets = (
+            chosen
+            for size in range(len(useful) + 1)
+            for chosen in combinations(useful, size)
+            if wanted <= set(''.join(device.yields for device in chosen))
+        )
+        return min(sets, key=lambda chosen: (sum(d.cost for d in chosen), len(chosen)))
+
+
+def read_devices(path: Path | None = None) -> DeviceTable:
+    """Read a device table, by default the one of the package.
+
+    Raises:
+        AnalysisError: A key is unknown or missing, or a value is not what it should be.
+        FileNotFoundError: There is no such file.
+    """
+    source = path or files('hexapod_doe.choosing') / 'devices.yaml'
+    record = yaml.safe_load(source.read_text(encoding='utf-8'))
+    expected = {'currency', 'delta_share', 'confidence', 'devices'}
+    if not isinstance(record, dict) or set(record) != expected:
+        raise AnalysisError(f'{source}: expected the keys {", ".join(sorted(expected))}')
+    devices = tuple(_device(entry, str(source)) for entry in record['devices'])
+    return DeviceTable(
+        devices, str(record['currency']), float(record['delta_share']), float(record['confidence'])
+    )
+
+
+def _device(entry: Any, source: str) -> Device:
+    names = {field.name for field in fields(Device)}
+    if not isinstance(entry, dict) or set(entry) != names:
+        raise AnalysisError(
+            f'{source}: device {entry}: expected the keys {", ".join(sorted(names))}'
+        )
+    numbers = {name: float(entry[name]) for name in names - {'name', 'yields'}}
+    if bad := [name for name, value in numbers.items() if value < 0]:
+        raise AnalysisError(f'{source}: device {entry["name"]!r}: {bad[0]} is negative')
+    if numbers['failure_probability'] > 1:
+        raise AnalysisError(f'{source}: device {entry["name"]!r}: failure_probability is above 1')
+    return Device(name=str(entry['name']), yields=str(entry['yields']), **numbers)

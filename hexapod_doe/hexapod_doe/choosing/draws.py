@@ -1,0 +1,53 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Draws of what a fitted model says, from which ranks and purchases get their uncertainty."""
+
+import numpy as np
+
+from hexapod_doe.choosing.prediction import back
+from hexapod_doe.fitting.regression import Fit
+from hexapod_doe.fitting.transform import Transform
+
+_CELLS = 2_000_000
+
+
+def draw_count(combinations: int) -> int:
+    """Return how many draws fit into memory with some ease: 4000 for 128 combinations."""
+    return int(np.clip(_CELLS // combinations, 500, 4000))
+
+
+def coefficient_draws(
+    fit: Fit, draws: int, rng: np.random.Generator
+) -> tuple[np.ndarray, np.ndarray]:
+    """Draw coefficients (draws, p) and residual deviations (draws,) of a least-squares fit.
+
+    s·√(df/χ²) scales both, so that a coefficient's draws follow its t distribution.
+    """
+    s = np.sqrt(fit.sse / rng.chisquare(fit.df_error, draws))
+    normal = rng.standard_normal((draws, len(fit.terms)))
+    return fit.coef + s[:, None] * (normal @ fit.r_inverse.T), s
+
+
+def prediction_draws(
+    fit: Fit,
+    points: np.ndarray,
+    transform: Transform | None,
+    draws: int,
+    rng: np.random.Generator,
+) -> np.ndarray:
+    """Draw the predictions of some points in original units (draws, m)."""
+    coef, _ = coefficient_draws(fit, draws, rng)
+    return back_draws(coef @ points.T, transform)
+
+
+def back_draws(eta: np.ndarray, transform: Transform | None) -> np.ndarray:
+    """Return draws in original units; below the transform's domain its smallest value."""
+    values = back(eta, transform)
+    return values if transform is None else np.nan_to_num(values, nan=-transform.shift)
+
+
+def interval_of(draws: np.ndarray, level: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return equal-tailed interval bounds over the first axis."""
+    low, high = np.quantile(draws, [(1 - level) / 2, (1 + level) / 2], axis=0)
+    return low, high

@@ -1,0 +1,138 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Two-part model of training runs: the probability of failure, and the reward given success.
+
+E[Y] = (1 − π)·μ_success + π·μ_failed. What is stated with intervals comes from the unselected
+models (failure on main effects, reward on terms up to order 2), whose intervals hold; the choice
+comes from the models after elimination, which pick better.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from scipy import special, stats
+
+from hexapod_doe.choosing.draws import coefficient_draws
+from hexapod_doe.designs.terms import CONSTANT, order
+from hexapod_doe.fitting.elimination import eliminate
+from hexapod_doe.fitting.logistic import LogisticFit, firth
+from hexapod_doe.fitting.model import corners, estimable_terms, independent_terms, model_matrix
+from hexapod_doe.fitting.regression import Fit, ols
+from hexapod_doe.tables.table import RunTable
+
+
+@dataclass(frozen=True)
+class Parts:
+    """Both fitted parts over the same factors."""
+
+    factors: tuple[str, ...]
+    failure_terms: tuple[str, ...]
+    failure: LogisticFit
+    success: Fit
+    failed: np.ndarray
+    """Responses of the failed runs."""
+    levels: pd.DataFrame
+    response: np.ndarray
+    """Levels and responses of the successful runs."""
+
+    def point(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return P(failure), reward given success and expected reward of all 2^k (2^k,)."""
+        grid = corners(self.factors)
+        pi = self.failure.probability(model_matrix(grid, self.failure_terms))
+        mu = model_matrix(grid, self.success.terms) @ self.success.coef
+        return pi, mu, (1 - pi) * mu + pi * self.failed.mean()
+
+    def draw(self, draws: int, rng: np.random.Generator) -> 'PartDraws':
+        """Draw both parts' parameters and what they say of all combinations."""
+        grid = corners(self.factors)
+        odds = rng.multivariate_normal(self.failure.coef, self.failure.covariance, draws)
+        pi = special.expit(odds @ model_matrix(grid, self.failure_terms).T)
+        coef, s = coefficient_draws(self.success, draws, rng)
+        mu = coef @ model_matrix(grid, self.success.terms).T
+        return PartDraws(pi, mu, s, _mean_draws(self.failed, draws, rng), self.failed)
+
+
+@dataclass(frozen=True)
+class PartDraws:
+    """Draws of both parts. Shapes: (draws, 2^k), and (draws,) for s and the mean of failures."""
+
+    pi: np.ndarray
+    mu: np.ndarray
+    s: np.ndarray
+    mean_failed: np.ndarray
+    failed: np.ndarray
+
+    @property
+    def expected(self) -> np.ndarray:
+        """Expected reward of a run (draws, 2^k)."""
+        return self.mixed_with(self.mu)
+
+    def mixed_with(self, mu: np.ndarray) -> np.ndarray:
+        """Return draws of the expected reward for draws of the reward given success."""
+        return (1 - self.pi) * mu + self.pi * self.mean_failed[:, None]
+
+    def future_mean(self, runs: int, rng: np.random.Generator) -> np.ndarray:
+        """Draw the mean of some new runs of each combination (draws, 2^k)."""
+        total = np.zeros_like(self.mu)
+        for _ in range(runs):
+            success = self.mu + self.s[:, None] * rng.standard_normal(self.mu.shape)
+            failed = rng.random(self.mu.shape) < self.pi
+            total += np.where(failed, rng.choice(self.failed, self.mu.shape), success)
+        return total / runs
+
+
+def fit_parts(table: RunTable, threshold: float) -> Parts | None:
+    """Fit both parts without selection; None where there are too few failures or successes."""
+    failed = table.values < threshold
+    mains = independent_terms(table.levels, [CONSTANT, *table.factors])
+    success_terms = independent_terms(table.levels[~failed], estimable_terms(table.levels, 2))
+    while failed.sum() >= 2 and (~failed).sum() - len(success_terms) < 2:
+        highest = max(map(order, success_terms))
+        if highest < 2:
+            return None
+        success_terms = tuple(term for term in success_terms if order(term) < highest)
+    if failed.sum() < 2 or (~failed).sum() - len(success_terms) < 2:
+        return None
+    return _fit(table, failed, mains, success_terms)
+
+
+def select_parts(table: RunTable, parts: Parts, threshold: float, alpha: float) -> Parts:
+    """Eliminate from both parts: by p for the failures, keeping hierarchy for the successes."""
+    failed = table.values < threshold
+    levels = table.levels
+    terms = list(parts.failure_terms)
+    fit = parts.failure
+    while len(terms) > 1:
+        z = np.abs(fit.coef) / np.sqrt(np.diag(fit.covariance))
+        weakest = int(np.argmin(z[1:])) + 1
+        if 2 * stats.norm.sf(z[weakest]) <= alpha:
+            break
+        del terms[weakest]
+        fit = firth(model_matrix(levels, terms), failed.astype(float))
+    success, _ = eliminate(
+        levels[~failed], table.values[~failed], parts.success.terms, alpha=alpha
+    )
+    return _fit(table, failed, tuple(terms), success)
+
+
+def _fit(
+    table: RunTable, failed: np.ndarray, failure_terms: Sequence[str], success: Sequence[str]
+) -> Parts:
+    levels, values = table.levels, table.values
+    return Parts(
+        factors=table.factors,
+        failure_terms=tuple(failure_terms),
+        failure=firth(model_matrix(levels, failure_terms), failed.astype(float)),
+        success=ols(levels[~failed], values[~failed], success),
+        failed=values[failed],
+        levels=levels[~failed],
+        response=values[~failed],
+    )
+
+
+def _mean_draws(values: np.ndarray, draws: int, rng: np.random.Generator) -> np.ndarray:
+    error = values.std(ddof=1) / np.sqrt(len(values))
+    return values.mean() + error * rng.standard_t(len(values) - 1, draws)

@@ -1,0 +1,141 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The options of the `plan` command line, one parser per command."""
+
+import argparse
+from pathlib import Path
+
+from hexapod_doe.designs.design import FRACTIONS
+from hexapod_doe.designs.planner import FULL_TRAINING
+
+COMMANDS = {
+    'make': 'make a plan (the default)',
+    'fold': 'add the foldover or a semifold of a plan that has been run',
+    'augment': 'add the cases that separate confounded terms best',
+    'power': 'say what a design is able to see',
+    'hours': 'propose a design for a budget of machine time',
+}
+
+
+def parse(words: list[str]) -> argparse.Namespace:
+    """Parse the command line; `command` of the result is a key of `COMMANDS`.
+
+    Without a command's name the words are those of `make`.
+    """
+    if not words or words[0] not in (*COMMANDS, '-h', '--help'):
+        words = ['make', *words]
+    return _parser().parse_args(words)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog='plan', description='Plan a designed experiment.')
+    commands = parser.add_subparsers(dest='command', required=True)
+    made = {name: commands.add_parser(name, help=text) for name, text in COMMANDS.items()}
+    _add_make(made['make'])
+    _add_fold(made['fold'])
+    _add_augment(made['augment'])
+    _add_power(made['power'])
+    _add_hours(made['hours'])
+    return parser
+
+
+def _add_make(parser: argparse.ArgumentParser) -> None:
+    _add_design(parser)
+    _add_output(parser)
+    parser.add_argument(
+        '--common-seeds', action='store_true', help='the same seeds in every case, as blocks'
+    )
+    parser.add_argument('--blocks', metavar='WORDS', help='block generators, such as ABE,BCG')
+    parser.add_argument(
+        '--confirm-runs',
+        type=int,
+        default=5,
+        metavar='M',
+        help='runs that will confirm a chosen set (default 5)',
+    )
+    parser.add_argument(
+        '--confirm-level',
+        type=float,
+        default=0.95,
+        metavar='P',
+        help='confidence of the interval that their mean must lie in (default 0.95)',
+    )
+
+
+def _add_fold(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('plan', type=Path, help='the plan.csv that has been run')
+    parser.add_argument('--on', required=True, metavar='LETTERS', help='factors that change sign')
+    parser.add_argument('--keep', metavar='A+', help='fold only the cases with this level')
+    _add_output(parser, replicates=None)
+
+
+def _add_augment(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('plan', type=Path, help='the plan.csv that has been run')
+    parser.add_argument('--extra', type=int, default=8, metavar='N', help='cases to add (8)')
+    parser.add_argument(
+        '--separate',
+        metavar='TERMS',
+        help='aliases to tell apart, such as CE,FG; every two-factor interaction by default',
+    )
+    _add_output(parser, replicates=None)
+
+
+def _add_power(parser: argparse.ArgumentParser) -> None:
+    _add_design(parser)
+    parser.add_argument('--replicates', type=int, default=1, metavar='N', help='runs per case')
+    parser.add_argument('--max-order', type=int, default=2, metavar='N', help='order of the model')
+    parser.add_argument('--effect', type=float, metavar='X', help='effect, in the unit of sigma')
+    parser.add_argument('--sigma', type=float, default=1.0, metavar='X', help='SD of one run')
+    parser.add_argument('--alpha', type=float, default=0.05, metavar='P', help='level of the test')
+    parser.add_argument('--failure', type=float, metavar='P', help='share of runs that fail')
+    parser.add_argument(
+        '--loss', type=float, default=0.0, metavar='X', help='how much a failed run loses'
+    )
+    parser.add_argument('--failure-sigma', type=float, metavar='X', help='SD of failed runs')
+    parser.add_argument('--repeats', type=int, default=2000, metavar='N', help='campaigns')
+    parser.add_argument('--seed', type=int, default=1, help='seed of the simulation')
+
+
+def _add_hours(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('--hours', type=float, required=True, help='wall time to use')
+    parser.add_argument(
+        '--seconds-per-run', type=float, required=True, metavar='S', help='measured time of a run'
+    )
+    parser.add_argument(
+        '--run-episodes', type=int, default=1, metavar='N', help='episodes of the measured run'
+    )
+    parser.add_argument('--workers', type=int, default=1, metavar='N', help='workers side by side')
+    parser.add_argument(
+        '--episodes',
+        type=int,
+        default=FULL_TRAINING,
+        metavar='N',
+        help=f'wanted length of a training (default {FULL_TRAINING})',
+    )
+    parser.add_argument('--factors', type=int, default=7, metavar='K', help='sensor groups (7)')
+    parser.add_argument('--sigma', type=float, metavar='X', help='SD of one run, if known')
+
+
+def _add_design(parser: argparse.ArgumentParser) -> None:
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument(
+        '--design', default='eighth', choices=list(FRACTIONS), help='named fraction'
+    )
+    which.add_argument('--generators', metavar='F=ABCD,G=-ABDE', help='generators of the design')
+    parser.add_argument(
+        '--factors', default='7', metavar='K', help='how many factors, or their letters (7)'
+    )
+
+
+def _add_output(parser: argparse.ArgumentParser, replicates: int | None = 1) -> None:
+    default = 'as in the plan' if replicates is None else replicates
+    parser.add_argument(
+        '--replicates',
+        type=int,
+        default=replicates,
+        metavar='N',
+        help=f'runs per case (default {default})',
+    )
+    parser.add_argument('--seed', type=int, default=1, help='seed of run order and run seeds')
+    parser.add_argument('--out', type=Path, default=Path('plan.csv'), help='file to write')

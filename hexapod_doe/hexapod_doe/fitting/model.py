@@ -1,0 +1,164 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The coded model matrix of a table of runs, and which terms the runs can tell apart.
+
+Columns are built here and not by a formula language, which would hide a factor named ``C`` and
+split aliased columns without a word. Levels are a data frame with one column per factor: −1 or
++1, or 0 in a whole row for a centre point.
+"""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+import pandas as pd
+
+from hexapod_doe.designs import terms as words
+from hexapod_doe.designs.aliases import alias_text
+from hexapod_doe.designs.terms import CONSTANT, letters_on, normalise, order, sort_key, terms_up_to
+from hexapod_doe.errors import AnalysisError
+
+CURVATURE = 'CP'
+"""The indicator of a centre point as a term of the model."""
+
+EMPTY_SET = '(none)'
+_TOLERANCE = 1e-9
+
+
+class AliasedTermsError(AnalysisError):
+    """Terms of one model whose columns the runs cannot tell apart."""
+
+
+def is_curvature(term: str, factors: Iterable[str]) -> bool:
+    """Tell whether `CP` means the centre points, not the product of factors C and P."""
+    return term == CURVATURE and not set(CURVATURE) <= set(factors)
+
+
+def term_key(term: str) -> tuple[bool, int, str]:
+    """Return the key that sorts terms as printed: by order, then alphabet, curvature last."""
+    return (term == CURVATURE, *sort_key(term))
+
+
+def parse_terms(text: str, factors: Sequence[str]) -> tuple[str, ...]:
+    """Read a list such as ``A,B,AB`` into terms; the constant is added.
+
+    Raises:
+        AnalysisError: A letter is not a factor or occurs twice in a term, or no term is named.
+    """
+    parts = [part.strip().replace('*', '') for part in text.split(',') if part.strip()]
+    if not parts:
+        raise AnalysisError(f'terms {text!r}: no term named, expected a list such as A,B,AB')
+    letters = ''.join(factors)
+    try:
+        terms = {
+            part if is_curvature(part, factors) else normalise(part, letters) for part in parts
+        }
+    except ValueError as error:
+        raise AnalysisError(str(error)) from error
+    return tuple(sorted(terms | {CONSTANT}, key=term_key))
+
+
+def parents(term: str) -> tuple[str, ...]:
+    """Return the terms that hierarchy demands with `term`: all its factors but one, each way."""
+    if term == CURVATURE or order(term) < 2:
+        return ()
+    return tuple(term.replace(letter, '') for letter in term)
+
+
+def model_matrix(levels: pd.DataFrame, terms: Iterable[str]) -> np.ndarray:
+    """Return the coded columns of the terms. Shape: (rows, terms)."""
+    factors, values = ''.join(levels.columns), levels.to_numpy(float)
+    return np.column_stack(
+        [
+            (values == 0).all(axis=1).astype(float)
+            if is_curvature(term, factors)
+            else words.column(values, factors, term)
+            for term in terms
+        ]
+    )
+
+
+def corners(factors: Sequence[str]) -> pd.DataFrame:
+    """Return all 2^k combinations in Yates order: the first factor changes fastest."""
+    runs = np.arange(2 ** len(factors))
+    return pd.DataFrame({name: 2 * (runs >> bit & 1) - 1 for bit, name in enumerate(factors)})
+
+
+def labels(levels: pd.DataFrame) -> list[str]:
+    """Name each row by its factors at +1, for example ``ABCDE``; ``(none)`` where none is."""
+    factors = ''.join(levels.columns)
+    return [letters_on(row, factors) or EMPTY_SET for row in levels.to_numpy(float)]
+
+
+def independent_terms(levels: pd.DataFrame, terms: Sequence[str]) -> tuple[str, ...]:
+    """Return the terms, taken in order, whose columns the ones before them don't explain."""
+    columns = model_matrix(levels.drop_duplicates(), terms)
+    basis = np.empty((len(columns), 0))
+    kept = []
+    for term, vector in zip(terms, columns.T, strict=True):
+        if basis.shape[1] == len(columns):
+            break
+        rest = vector - basis @ (basis.T @ vector)
+        rest -= basis @ (basis.T @ rest)  # a second pass keeps the basis orthogonal
+        length = np.linalg.norm(rest)
+        if length > _TOLERANCE * max(1.0, float(np.linalg.norm(vector))):
+            basis = np.column_stack([basis, rest / length])
+            kept.append(term)
+    return tuple(kept)
+
+
+def explain_dependent(levels: pd.DataFrame, terms: Sequence[str]) -> dict[str, tuple[str, ...]]:
+    """Return for each dependent term the independent ones that its column is made of."""
+    cases = levels.drop_duplicates()
+    kept = independent_terms(levels, terms)
+    others = [term for term in terms if term not in kept]
+    if not others:
+        return {}
+    weights = np.linalg.lstsq(model_matrix(cases, kept), model_matrix(cases, others))[0]
+    return {
+        term: tuple(name for name, weight in zip(kept, column, strict=True) if abs(weight) > 1e-6)
+        for term, column in zip(others, weights.T, strict=True)
+    }
+
+
+def check_rank(levels: pd.DataFrame, terms: Sequence[str]) -> None:
+    """Refuse a model whose columns are dependent.
+
+    Raises:
+        AliasedTermsError: Naming each aliased term and the terms that it cannot be told from.
+    """
+    explained = explain_dependent(levels, terms)
+    if explained:
+        pairs = '; '.join(f'{term} with {" + ".join(by)}' for term, by in explained.items())
+        raise AliasedTermsError(
+            f'the runs cannot tell these terms apart: {pairs}; '
+            f'{len(terms)} terms have rank {len(terms) - len(explained)}: name one of each'
+        )
+
+
+def estimable_terms(levels: pd.DataFrame, max_order: int | None = None) -> tuple[str, ...]:
+    """Return the representatives that the runs can estimate: lowest order, then alphabet.
+
+    With every order allowed this is the saturated model of the distinct cases. Curvature is
+    added when there are centre points.
+    """
+    factors = ''.join(levels.columns)
+    wanted = [CONSTANT, *terms_up_to(factors, min(max_order or len(factors), len(factors)))]
+    if (levels == 0).all(axis=1).any() and is_curvature(CURVATURE, factors):
+        wanted.insert(1, CURVATURE)
+    return tuple(sorted(independent_terms(levels, wanted), key=term_key))
+
+
+def alias_strings(levels: pd.DataFrame, terms: Iterable[str]) -> dict[str, str]:
+    """Return each term's alias string, itself first, such as ``CE + FG``.
+
+    Aliases up to the term's own order (two at least) are shown; centre points don't count.
+    """
+    factors = ''.join(levels.columns)
+    cases = levels[(levels != 0).all(axis=1)].drop_duplicates().to_numpy(float)
+    return {
+        term: term
+        if term == CONSTANT or is_curvature(term, factors)
+        else alias_text(term, cases, factors, max(2, order(term)))
+        for term in terms
+    }

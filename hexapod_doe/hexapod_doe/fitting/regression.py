@@ -1,0 +1,170 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Ordinary least squares on a coded matrix, by QR, with the diagnostics of a designed experiment.
+
+X'X is never formed: after a power transform responses reach 1e6 and their squares 1e13.
+Formulas: Montgomery, Design and Analysis of Experiments, 8th ed., sections 6.2–6.8 and 10.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from scipy import linalg, stats
+
+from hexapod_doe.errors import AnalysisError
+from hexapod_doe.fitting.model import check_rank, model_matrix
+from hexapod_doe.fitting.pure_error import LackOfFit, lack_of_fit
+
+_SATURATED = 1e-9
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A least-squares fit; what does not exist (say, s of a saturated fit) is None.
+
+    Arrays follow `terms` (p) or the rows (n). `r_inverse` (p, p) holds R⁻¹ of X = QR, so that
+    Cov(b) = s² R⁻¹R⁻ᵀ. `press_cases` leaves out all runs of a case at once: it is the honest
+    one for combinations that were never run.
+    """
+
+    terms: tuple[str, ...]
+    coef: np.ndarray
+    r_inverse: np.ndarray
+    fitted: np.ndarray
+    residuals: np.ndarray
+    leverage: np.ndarray
+    sse: float
+    sst: float
+    press: float | None
+    press_cases: float | None
+    lack_of_fit: LackOfFit | None
+
+    @property
+    def n(self) -> int:
+        """Number of rows."""
+        return len(self.residuals)
+
+    @property
+    def df_error(self) -> int:
+        """Degrees of freedom of the error."""
+        return self.n - len(self.terms)
+
+    @property
+    def s(self) -> float | None:
+        """Residual standard deviation."""
+        return float(np.sqrt(self.sse / self.df_error)) if self.df_error else None
+
+    @property
+    def se(self) -> np.ndarray | None:
+        """Standard errors of the coefficients."""
+        return None if self.s is None else self.s * np.sqrt((self.r_inverse**2).sum(axis=1))
+
+    @property
+    def t(self) -> np.ndarray | None:
+        """Coefficients over their standard errors; infinite where the fit leaves no error."""
+        if self.se is None:
+            return None
+        with np.errstate(divide='ignore', invalid='ignore'):
+            return self.coef / self.se
+
+    @property
+    def p(self) -> np.ndarray | None:
+        """Two-sided p-values of the coefficients."""
+        return None if self.t is None else 2 * stats.t.sf(np.abs(self.t), self.df_error)
+
+    @property
+    def r2(self) -> float | None:
+        """Share of the total sum of squares that the model takes up."""
+        return 1 - self.sse / self.sst if self.sst > 0 else None
+
+    @property
+    def r2_adj(self) -> float | None:
+        """R² adjusted for the number of terms."""
+        if not self.df_error or self.sst <= 0:
+            return None
+        return 1 - (self.sse / self.df_error) / (self.sst / (self.n - 1))
+
+    @property
+    def r2_pred(self) -> float | None:
+        """Predicted R², leaving out one row at a time."""
+        return None if self.press is None or self.sst <= 0 else 1 - self.press / self.sst
+
+    @property
+    def r2_pred_cases(self) -> float | None:
+        """Predicted R², leaving out one case at a time."""
+        return (
+            None if self.press_cases is None or self.sst <= 0 else 1 - self.press_cases / self.sst
+        )
+
+    def covariance(self) -> np.ndarray:
+        """Return Cov(b) (p, p).
+
+        Raises:
+            AnalysisError: the fit is saturated.
+        """
+        if self.s is None:
+            raise AnalysisError(
+                'a saturated fit has no error to give its coefficients a covariance'
+            )
+        return self.s**2 * self.r_inverse @ self.r_inverse.T
+
+    def unscaled_variance(self, points: np.ndarray) -> np.ndarray:
+        """Return q = x₀'(X'X)⁻¹x₀ for each row x₀ of `points` (m, p)."""
+        return ((points @ self.r_inverse) ** 2).sum(axis=1)
+
+
+def ols(levels: pd.DataFrame, response: np.ndarray, terms: Sequence[str]) -> Fit:
+    """Fit a response (n,) on coded levels (n rows) by least squares.
+
+    Raises:
+        AliasedTermsError: the runs cannot tell the terms apart.
+        AnalysisError: there are fewer rows than terms.
+    """
+    check_rank(levels, terms)
+    matrix = model_matrix(levels, terms)
+    if len(matrix) < len(terms):
+        raise AnalysisError(f'{len(terms)} terms need as many runs, the table has {len(matrix)}')
+    q, r = linalg.qr(matrix, mode='economic')
+    r_inverse = linalg.solve_triangular(r, np.eye(len(r)))
+    fitted = q @ (q.T @ response)
+    residuals = response - fitted
+    leverage = (q**2).sum(axis=1)
+    cases = levels.groupby(list(levels.columns), sort=False).ngroup().to_numpy()
+    sse = float(residuals @ residuals)
+    return Fit(
+        terms=tuple(terms),
+        coef=r_inverse @ (q.T @ response),
+        r_inverse=r_inverse,
+        fitted=fitted,
+        residuals=residuals,
+        leverage=leverage,
+        sse=sse,
+        sst=float(((response - response.mean()) ** 2).sum()),
+        press=_press(residuals, leverage),
+        press_cases=_press_cases(residuals, leverage, cases),
+        lack_of_fit=lack_of_fit(sse, response, cases, len(terms)),
+    )
+
+
+def _press(residuals: np.ndarray, leverage: np.ndarray) -> float | None:
+    """Return Σ(eᵢ/(1−hᵢ))², or None where leaving out a row leaves the model inestimable."""
+    if (leverage > 1 - _SATURATED).any():
+        return None
+    return float(((residuals / (1 - leverage)) ** 2).sum())
+
+
+def _press_cases(residuals: np.ndarray, leverage: np.ndarray, cases: np.ndarray) -> float | None:
+    """Return PRESS leaving out all m rows of a case at once.
+
+    They share x₀, so that their block of the hat matrix is h·11' and the deleted residuals are
+    eᵢ + h·Σe/(1−m·h).
+    """
+    runs = np.bincount(cases)[cases]
+    if (runs * leverage > 1 - _SATURATED).any():
+        return None
+    totals = np.bincount(cases, weights=residuals)[cases]
+    deleted = residuals + leverage * totals / (1 - runs * leverage)
+    return float((deleted**2).sum())

@@ -1,0 +1,129 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Turns fits into records: steps, removals and main effects."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pandas as pd
+
+from hexapod_doe.analysis.results import MainEffect, Removal, Step
+from hexapod_doe.designs.terms import CONSTANT
+from hexapod_doe.fitting.elimination import Dropped
+from hexapod_doe.fitting.model import alias_strings
+from hexapod_doe.fitting.pipeline import FittedStep
+from hexapod_doe.fitting.regression import Fit
+from hexapod_doe.tables.table import RunTable
+
+
+def step_record(step: FittedStep, aliases: Mapping[str, str]) -> Step:
+    """Return the record of a fitted step."""
+    fit, terms = step.fit, step.fit.terms
+    blank = np.full(len(terms), np.nan)
+    se = blank if fit.se is None else fit.se
+    return Step(
+        name=step.name,
+        description=step.description,
+        scale='transformed' if step.transformed else 'response',
+        n=fit.n,
+        terms=terms,
+        aliases={term: aliases[term] for term in terms},
+        coef=_map(terms, fit.coef),
+        se=_map(terms, se),
+        t=_map(terms, blank if fit.t is None else fit.t),
+        p=_map(terms, blank if fit.p is None else fit.p),
+        effects=_map(terms, 2 * fit.coef, constant=False),
+        se_effects=_map(terms, 2 * se, constant=False),
+        r2=fit.r2,
+        r2_adj=fit.r2_adj,
+        r2_pred=fit.r2_pred,
+        press=fit.press,
+        r2_pred_cases=fit.r2_pred_cases,
+        press_cases=fit.press_cases,
+        s=fit.s,
+        df_error=fit.df_error,
+        sse=fit.sse,
+        sst=fit.sst,
+        lack_of_fit=fit.lack_of_fit,
+        rows=tuple(map(int, step.rows)),
+        response=_tuple(step.response),
+        fitted=_tuple(fit.fitted),
+        residuals=_tuple(fit.residuals),
+        leverage=_tuple(fit.leverage),
+        studentized=studentized(fit),
+    )
+
+
+def studentized(fit: Fit) -> tuple[float | None, ...]:
+    """Return externally studentised residuals: eᵢ/(s₍ᵢ₎√(1−hᵢ)), s₍ᵢ₎ without row i."""
+    if fit.df_error < 2:
+        return (None,) * fit.n
+    free = 1 - fit.leverage
+    with np.errstate(divide='ignore', invalid='ignore'):
+        without = (fit.sse - fit.residuals**2 / free) / (fit.df_error - 1)
+        values = fit.residuals / np.sqrt(without * free)
+    return tuple(_number(value) for value in values)
+
+
+def removals(dropped: Sequence[Dropped], aliases: Mapping[str, str]) -> tuple[Removal, ...]:
+    """Return the elimination trace with alias strings."""
+    return tuple(
+        Removal(step, item.term, aliases[item.term], item.p, item.s, item.r2, item.r2_adj)
+        for step, item in enumerate(dropped, start=1)
+    )
+
+
+def aliases_of(
+    table: RunTable, steps: Sequence[FittedStep], dropped: Sequence[Dropped]
+) -> dict[str, str]:
+    """Return the alias string of every term that any step fitted or dropped."""
+    terms = dict.fromkeys(term for step in steps for term in step.fit.terms)
+    terms |= dict.fromkeys(item.term for item in dropped)
+    return alias_strings(table.levels, terms)
+
+
+def main_effects(table: RunTable, s: float | None) -> tuple[MainEffect, ...]:
+    """Compare the runs with and without each factor.
+
+    Args:
+        table: The runs, none dropped.
+        s: Residual standard deviation for the standard error of the effects.
+    """
+    return tuple(_main_effect(table.rows[name], table.values, name, s) for name in table.factors)
+
+
+def _main_effect(
+    level: 'pd.Series[int]', response: np.ndarray, name: str, s: float | None
+) -> MainEffect:
+    with_, without = response[level > 0], response[level < 0]
+    scale = np.sqrt(1 / len(with_) + 1 / len(without))
+    return MainEffect(
+        factor=name,
+        mean_with=float(with_.mean()),
+        mean_without=float(without.mean()),
+        se_mean_with=_standard_error(with_),
+        se_mean_without=_standard_error(without),
+        effect=float(with_.mean() - without.mean()),
+        se_effect=None if s is None else float(s * scale),
+    )
+
+
+def _standard_error(values: np.ndarray) -> float | None:
+    return float(values.std(ddof=1) / np.sqrt(len(values))) if len(values) > 1 else None
+
+
+def _map(terms: Sequence[str], values: np.ndarray, constant: bool = True) -> dict[str, float]:
+    return {
+        term: float(value)
+        for term, value in zip(terms, values, strict=True)
+        if constant or term != CONSTANT
+    }
+
+
+def _tuple(values: np.ndarray) -> tuple[float, ...]:
+    return tuple(map(float, values))
+
+
+def _number(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

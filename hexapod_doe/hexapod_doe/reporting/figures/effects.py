@@ -1,0 +1,207 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Figures of what each sensor does: mean responses with and without it."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from hexapod_doe.analysis.results import Analysis, MainEffect
+from hexapod_doe.designs.terms import order
+from hexapod_doe.reporting.figures.chart import Chart
+from hexapod_doe.reporting.figures.parts import (
+    canvas,
+    design_label,
+    designs,
+    factor_label,
+    grid,
+    is_wide,
+    short_alias,
+    unit_label,
+)
+from hexapod_doe.reporting.figures.significance import sizes
+from hexapod_doe.reporting.figures.style import INK, MARKERS, MUTED, SERIES, SURFACE
+from hexapod_doe.reporting.formats import number, signed
+
+MAX_INTERACTIONS = 6
+"""More panels than this are tables, not figures."""
+
+
+def main_effects(analysis: Analysis) -> Chart:
+    """Draw the mean response with and without each factor, for every design, with SE bars."""
+    ordered = sorted(analysis.main_effects, key=lambda effect: -abs(effect.effect))
+    factors = [effect.factor for effect in ordered]
+    rows = [
+        {'design': other.design.name, **_record(effect)}
+        for other in designs(analysis)
+        for effect in other.main_effects
+    ]
+
+    def draw(width: float) -> Figure:
+        wide = is_wide(width)
+        figure, axes = canvas(width, 3.9 if wide else 3.3)
+        several = designs(analysis)
+        for index, other in enumerate(several):
+            shift = 0.1 * (index - (len(several) - 1) / 2)
+            _draw_design(axes, other, factors, index, shift)
+        axes.axhline(_mean(analysis), color=MUTED, linewidth=0.7, linestyle=(0, (2, 3)))
+        names = [factor_label(analysis.design, f, 11) if wide else f for f in factors]
+        axes.set_xticks(range(len(factors)), names)
+        axes.tick_params(axis='x', labelcolor=INK)
+        axes.set_ylabel(unit_label(analysis))
+        _legend(axes, len(several))
+        return figure
+
+    return Chart(
+        'main_effects',
+        _main_effects_title(analysis, ordered[0]),
+        'Each pair joins the mean of all runs without a sensor (hollow) to the mean with it '
+        '(filled); bars are one standard error of each mean. Sensors are ordered by the size of '
+        'their effect; the dotted line is the mean of all runs. No run is left out here.',
+        pd.DataFrame(rows),
+        draw,
+    )
+
+
+def interactions(analysis: Analysis) -> Chart | None:
+    """Draw the mean response at the four corners of the interactions that matter most."""
+    terms = _interaction_terms(analysis)
+    if not terms:
+        return None
+    table = analysis.table[analysis.table['kept']]
+    data = pd.concat([_corners(table, term) for term in terms], ignore_index=True)
+    aliases = analysis.design.aliases
+
+    def draw(width: float) -> Figure:
+        columns = 3 if is_wide(width) else 2
+        figure, panels = grid(width, len(terms), columns, 1.4, below=0.55, foot=0.3)
+        for axes, term in zip(panels, terms, strict=True):
+            _draw_interaction(axes, data[data['term'] == term], term)
+            axes.set_title(short_alias(aliases.get(term, term)), loc='left')
+        figure.supylabel(unit_label(analysis), x=0.01, fontsize=9, color=MUTED)
+        return figure
+
+    in_model = [term for term in analysis.final.terms if order(term) == 2]
+    title = (
+        f'{len(in_model)} interactions stay in the model'
+        if len(in_model) > 1
+        else f'The interaction {in_model[0]} stays in the model'
+        if in_model
+        else 'No interaction is significant; these are the largest'
+    )
+    return Chart(
+        'interactions',
+        title,
+        'Mean response without and with the first sensor, once without (hollow) and once with '
+        '(filled) the second one. Parallel lines mean that the sensors act independently. Each '
+        'panel is named by all terms that it may stand for.',
+        data,
+        draw,
+    )
+
+
+def _record(effect: MainEffect) -> dict[str, float | str | None]:
+    return {
+        'factor': effect.factor,
+        'mean_without': effect.mean_without,
+        'se_mean_without': effect.se_mean_without,
+        'mean_with': effect.mean_with,
+        'se_mean_with': effect.se_mean_with,
+        'effect': effect.effect,
+        'se_effect': effect.se_effect,
+    }
+
+
+def _draw_design(
+    axes: Axes, analysis: Analysis, factors: list[str], index: int, shift: float
+) -> None:
+    colour, marker = SERIES[index % len(SERIES)], MARKERS[index % len(MARKERS)]
+    effects = {effect.factor: effect for effect in analysis.main_effects}
+    for slot, factor in enumerate(factors):
+        effect = effects[factor]
+        x = np.array([slot - 0.17, slot + 0.17]) + shift
+        y = [effect.mean_without, effect.mean_with]
+        error = [effect.se_mean_without or 0, effect.se_mean_with or 0]
+        axes.plot(x, y, color=colour, linewidth=1.2, zorder=2)
+        axes.errorbar(x, y, error, color=colour, linestyle='none', linewidth=1.2, zorder=2)
+        axes.plot(x[0], y[0], marker, color=colour, markerfacecolor=SURFACE, zorder=3)
+        axes.plot(x[1], y[1], marker, color=colour, zorder=3)
+    axes.plot([], [], marker + '-', color=colour, label=design_label(analysis.design))
+
+
+def _legend(axes: Axes, series: int) -> None:
+    if series == 1:
+        axes.lines[-2].set_label('_')  # one design needs no name: the page has it
+        colour, marker = SERIES[0], MARKERS[0]
+        for face, label in ((SURFACE, 'without the sensor'), (colour, 'with it')):
+            axes.plot([], [], marker, color=colour, markerfacecolor=face, label=label)
+    axes.legend(loc='lower left', bbox_to_anchor=(0, 1), ncols=2, borderaxespad=0, handlelength=1)
+
+
+def _mean(analysis: Analysis) -> float:
+    return float(analysis.table['response'].mean())
+
+
+def _main_effects_title(analysis: Analysis, largest: MainEffect) -> str:
+    name = factor_label(analysis.design, largest.factor)
+    error = '' if largest.se_effect is None else f' ± {number(largest.se_effect, 2)}'
+    size = f'{signed(largest.effect)}{error}'
+    found = sizes(analysis)
+    if found is None or largest.factor in found.active:
+        title = f'{name} moves the response most: {size}'
+    else:
+        title = f'No sensor stands out from noise; the largest effect is {name}, {size}'
+    overlapping = sum(
+        _bars_overlap(effect, other)
+        for compared in analysis.compared
+        for effect, other in zip(analysis.main_effects, compared.main_effects, strict=True)
+    )
+    total = len(analysis.compared) * len(analysis.main_effects)
+    if not total:
+        return title
+    return f'{title}; the error bars of {overlapping} of {total} effects overlap'
+
+
+def _bars_overlap(first: MainEffect, second: MainEffect) -> bool:
+    reach = (first.se_effect or 0) + (second.se_effect or 0)
+    return abs(first.effect - second.effect) <= reach
+
+
+def _interaction_terms(analysis: Analysis) -> list[str]:
+    """Return two-factor terms of the final model, else the largest of the first one."""
+    final, first = analysis.final, analysis.steps[0]
+    pool = [term for term in final.terms if order(term) == 2 and term != 'CP']
+    sizes = final.effects if pool else first.effects
+    pool = pool or [term for term in first.terms if order(term) == 2 and term != 'CP']
+    limit = MAX_INTERACTIONS if sizes is final.effects else 3
+    return sorted(pool, key=lambda term: -abs(sizes[term]))[:limit]
+
+
+def _corners(table: pd.DataFrame, term: str) -> pd.DataFrame:
+    first, second = term[0], term[1]
+    means = table.groupby([first, second])['response'].agg(['mean', 'count']).reset_index()
+    means = means.rename(columns={first: 'first', second: 'second', 'count': 'runs'})
+    return means[means['first'] != 0].assign(term=term)
+
+
+def _draw_interaction(axes: Axes, corners: pd.DataFrame, term: str) -> None:
+    first, second = term[0], term[1]
+    lines = {level: corners[corners['second'] == level].sort_values('first') for level in (-1, 1)}
+    ends = {level: float(line['mean'].iloc[-1]) for level, line in lines.items()}
+    for level, colour, face in ((-1, MUTED, SURFACE), (1, SERIES[0], SERIES[0])):
+        line = lines[level]
+        axes.plot(line['first'], line['mean'], 'o-', color=colour, markerfacecolor=face)
+        axes.annotate(
+            f'with {second}' if level > 0 else f'no {second}',
+            (float(line['first'].iloc[-1]), ends[level]),
+            (5, 4 if ends[level] > ends[-level] else -4),  # apart where the lines meet
+            textcoords='offset points',
+            va='center',
+            color=colour,
+            fontsize=8.5,
+        )
+    axes.set_xticks([-1, 1], [f'no {first}', f'with {first}'])
+    axes.set_xlim(-1.4, 2.1)
+    axes.margins(y=0.12)

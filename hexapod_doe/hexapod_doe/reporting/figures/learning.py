@@ -1,0 +1,133 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Figures of the runs themselves: every run's response, and the learning curves of each case."""
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from hexapod_doe.analysis.results import Analysis
+from hexapod_doe.reporting.figures.chart import Chart
+from hexapod_doe.reporting.figures.parts import canvas, failed, grid, is_wide, unit_label
+from hexapod_doe.reporting.figures.style import BLUE, INK, MUTED, ORANGE, SURFACE
+from hexapod_doe.reporting.formats import count, number
+
+MAX_PANELS = 64
+"""Learning curves are drawn for at most so many cases, the best ones."""
+MAX_NAMES = 64
+"""More cases than this are drawn without their names, closer together."""
+POINTS = 40
+"""A curve is drawn through at most so many episodes; the bags hold them all."""
+
+
+def runs_by_case(analysis: Analysis) -> Chart:
+    """Draw the response of every run, case by case, the best case first."""
+    table = analysis.table.assign(failed=failed(analysis))
+    means = table.groupby('label')['response'].mean().sort_values(ascending=False)
+    order = list(means.index)
+    repeated = len(table) > len(order)
+
+    def draw(width: float) -> Figure:
+        wide = is_wide(width)
+        named = len(order) <= MAX_NAMES
+        figure, axes = canvas(width, 0.7 + (0.17 if named else 0.05) * len(order))
+        rows = table['label'].map({label: row for row, label in enumerate(order)})
+        _dots(axes, table['response'], rows, table['kept'], table['failed'])
+        if repeated:
+            axes.plot(means, range(len(order)), '|', color=INK, markersize=9, markeredgewidth=1.6)
+        axes.set_yticks(range(len(order)) if named else [], order if named else [])
+        axes.tick_params(axis='y', labelcolor=INK, labelsize=8.5 if wide else 7.5)
+        axes.set_ylim(len(order) - 0.4, -0.6)
+        axes.grid(visible=False, axis='y')
+        axes.grid(visible=True, axis='x')
+        axes.set_xlabel(unit_label(analysis))
+        return figure
+
+    return Chart(
+        'runs_by_case',
+        _runs_title(table, order),
+        'One dot per training run'
+        + (', the bar marks the mean of the case' if repeated else '')
+        + '. Hollow dots were left out of the fit; orange ones count as failed.',
+        table[['run_id', 'case', 'replicate', 'label', 'response', 'kept', 'failed']],
+        draw,
+    )
+
+
+def learning_curves(analysis: Analysis) -> Chart | None:
+    """Draw the moving average return of every run, one panel per case, with the case's mean."""
+    if analysis.curves.empty:
+        return None
+    curves = analysis.curves[['case', 'label', 'run_id', 'episode', 'average']]
+    best = analysis.table.groupby('case')['response'].mean().nlargest(MAX_PANELS).index
+    data = _thinned(curves[curves['case'].isin(best)])
+    cases = data.drop_duplicates('case').sort_values('case')[['case', 'label']]
+
+    def draw(width: float) -> Figure:
+        columns = 4 if is_wide(width) else 2
+        figure, panels = grid(width, len(cases), columns, 0.72)
+        for axes, (case, label) in zip(panels, cases.itertuples(index=False), strict=True):
+            _draw_case(axes, data[data['case'] == case])
+            axes.set_title(f'{case}  {label}', loc='left', fontsize=8.5, pad=3)
+            axes.tick_params(labelbottom=axes in panels[-columns:])
+        figure.supxlabel('episode', y=0.01, fontsize=9, color=MUTED)
+        figure.supylabel('moving average of the return', x=0.01, fontsize=9, color=MUTED)
+        return figure
+
+    return Chart(
+        'learning_curves',
+        _curves_title(curves),
+        'Thin lines are training runs, the thick line is the mean of the case; all panels share '
+        'their axes. The number is the case, the letters are its sensors.'
+        + (f' The {MAX_PANELS} best cases are shown.' if len(cases) == MAX_PANELS else ''),
+        data,
+        draw,
+    )
+
+
+def _dots(axes: Axes, x: pd.Series, rows: pd.Series, kept: pd.Series, failed: pd.Series) -> None:
+    for bad, colour in ((False, BLUE), (True, ORANGE)):
+        for used, face in ((False, SURFACE), (True, colour)):
+            part = (failed == bad) & (kept == used)
+            axes.plot(x[part], rows[part], 'o', color=colour, markerfacecolor=face,
+                      markersize=4, alpha=0.8, markeredgewidth=0.9)  # fmt: skip
+
+
+def _runs_title(table: pd.DataFrame, order: list[str]) -> str:
+    failures = int(table['failed'].sum())
+    runs = len(table)
+    if failures:
+        return f'{failures} of {runs} runs failed'
+    if table.groupby('label').size().max() == 1:
+        return f'{count(runs, "run")}, one of each case: their spread by chance is unknown'
+    within = float(np.sqrt(table.groupby('label')['response'].var(ddof=1).mean()))
+    return f'Runs of one case spread by {number(within, 2)} (standard deviation)'
+
+
+def _thinned(curves: pd.DataFrame) -> pd.DataFrame:
+    last = int(curves['episode'].max())
+    first = int(curves['episode'].min())
+    chosen = np.unique(np.linspace(first, last, POINTS).round().astype(int))
+    return curves[curves['episode'].isin(chosen)].sort_values(['case', 'run_id', 'episode'])
+
+
+def _draw_case(axes: Axes, data: pd.DataFrame) -> None:
+    for _, run in data.groupby('run_id'):
+        axes.plot(run['episode'], run['average'], color=MUTED, linewidth=0.6, alpha=0.7)
+    mean = data.groupby('episode')['average'].mean()
+    style = 'o-' if len(mean) <= 10 else '-'
+    axes.plot(mean.index, mean, style, color=BLUE, linewidth=1.7, markersize=3)
+    axes.tick_params(labelsize=7.5)
+    axes.xaxis.set_major_locator(MaxNLocator(3, integer=True))
+    axes.yaxis.set_major_locator(MaxNLocator(3))
+
+
+def _curves_title(curves: pd.DataFrame) -> str:
+    ordered = curves.sort_values('episode').groupby('run_id')['average']
+    gain = float((ordered.last() - ordered.first()).median())
+    episodes = int(curves.groupby('run_id')['episode'].nunique().max())
+    change = 'gains' if gain > 0 else 'loses'
+    return f'In {count(episodes, "episode")} the median run {change} {number(abs(gain), 2)}'

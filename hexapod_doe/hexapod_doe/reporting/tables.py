@@ -1,0 +1,161 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The tables of the report: what one is, and those of predictions, effects, aliases and runs."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+
+from hexapod_doe.analysis.results import Analysis, Prediction
+from hexapod_doe.reporting.formats import MISSING, aligned, chance, interval
+from hexapod_doe.reporting.standing import Standing, standings
+
+MAX_ROWS = 512
+"""Sets listed on the page; the CSV has all."""
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table twice: as text for the page, and at full precision for its CSV."""
+
+    name: str
+    title: str
+    caption: str
+    cells: Mapping[str, Sequence[str]]
+    """Heading -> the column's texts."""
+    data: pd.DataFrame
+
+    @property
+    def rows(self) -> list[tuple[str, ...]]:
+        """The texts, row by row."""
+        return list(zip(*self.cells.values(), strict=True))
+
+    def save(self, folder: Path) -> None:
+        """Write the CSV."""
+        self.data.to_csv(folder / f'{self.name}.csv', index=False, lineterminator='\n')
+
+
+def predictions(analysis: Analysis) -> Table:
+    """Tabulate all sets, best first."""
+    every, ranks = standings(analysis), analysis.rank_uncertainty
+    ranked = every[:MAX_ROWS]
+    finals = {p.label: p for p in analysis.predictions}
+    cells = {
+        'rank': [f'{s.rank}' for s in ranked],
+        'set': [s.label for s in ranked],
+        'predicted': aligned([s.value for s in ranked], 4),
+        'interval of the mean': [interval(s.ci) for s in ranked],
+        'of one run': [interval(s.pi) for s in ranked],
+        'trained': ['yes' if s.tested else '' for s in ranked],
+        'safe': ['yes' if s.alias_safe else '' for s in ranked],
+    }
+    if ranks is not None:
+        cells |= {
+            'P(best)': [chance(ranks.p_best.get(s.label)) for s in ranked],
+            'P(top 3)': [chance(ranks.p_top3.get(s.label)) for s in ranked],
+            'ranks': [_ranks(ranks.rank_interval.get(s.label)) for s in ranked],
+        }
+    return Table(
+        'predictions',
+        f'All {len(every)} sets'
+        if every == ranked
+        else f'The {MAX_ROWS} best of {len(every)} sets',
+        f'Intervals and ranks hold with {100 * analysis.level:g} %. Safe: the prediction is the '
+        'same whichever name a confounded sum is given.',
+        cells,
+        pd.DataFrame([_prediction_record(analysis, s, finals) for s in every]),
+    )
+
+
+def aliases(analysis: Analysis) -> Table | None:
+    """Tabulate the sums that the cases cannot take apart."""
+    mixed = {term: text for term, text in analysis.design.aliases.items() if ' ' in text}
+    if not mixed:
+        return None
+    return Table(
+        'aliases',
+        'What the cases cannot tell apart',
+        f'{analysis.design.defining_relation}. Each row is one contrast: the data see the sum.',
+        {
+            'named after': list(mixed),
+            'sum': list(mixed.values()),
+            'in the final model': [
+                'yes' if term in analysis.final.terms else '' for term in mixed
+            ],
+        },
+        pd.DataFrame({'term': mixed.keys(), 'alias': mixed.values()}),
+    )
+
+
+def main_effects(analysis: Analysis) -> Table:
+    """Tabulate the mean response with and without each factor."""
+    names, found = analysis.design.factor_names, analysis.main_effects
+    return Table(
+        'main_effect_means',
+        'Main effects',
+        'Means over all runs, none left out.',
+        {
+            'sensor': [f'{e.factor} {names.get(e.factor, "")}'.strip() for e in found],
+            'without': aligned([e.mean_without for e in found], 4),
+            'with': aligned([e.mean_with for e in found], 4),
+            'effect': aligned([e.effect for e in found], 4, sign=True),
+            'standard error': aligned([e.se_effect for e in found], 3),
+        },
+        pd.DataFrame([vars(effect) for effect in found]),
+    )
+
+
+def runs(analysis: Analysis) -> Table:
+    """Tabulate every run."""
+    table = analysis.table
+    return Table(
+        'runs',
+        f'All {len(table)} runs',
+        'In the order of the plan.',
+        {
+            'run': list(table['run_id'].astype(str)),
+            'case': list(table['case'].astype(str)),
+            'replicate': list(table['replicate'].astype(str)),
+            'set': list(table['label']),
+            analysis.response.replace('_', ' '): aligned(table['response'].tolist(), 4),
+            'fitted': ['yes' if kept else '' for kept in table['kept']],
+        },
+        table,
+    )
+
+
+def _ranks(bounds: tuple[int, int] | None) -> str:
+    if bounds is None:
+        return MISSING
+    low, high = bounds
+    return f'{low}' if low == high else f'{low} to {high}'
+
+
+def _prediction_record(
+    analysis: Analysis, standing: Standing, finals: Mapping[str, Prediction]
+) -> dict[str, object]:
+    ranks, label = analysis.rank_uncertainty, standing.label
+    final = finals[label]
+    extra = {} if ranks is None else {
+        'p_best': ranks.p_best.get(label), 'p_top3': ranks.p_top3.get(label)
+    }  # fmt: skip
+    return {
+        'rank': standing.rank,
+        'label': label,
+        **standing.levels,
+        'value': standing.value,
+        'ci_low': standing.ci[0],
+        'ci_high': standing.ci[1],
+        'pi_low': standing.pi[0],
+        'pi_high': standing.pi[1],
+        'tested': standing.tested,
+        'alias_safe': standing.alias_safe,
+        'final_model_rank': final.rank,
+        'final_model_fit': final.fit,
+        'final_model_ci_low': final.ci[0],
+        'final_model_ci_high': final.ci[1],
+        **extra,
+    }

@@ -1,0 +1,196 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Study of the analysis on simulated campaigns: do its intervals cover, are its choices good?
+
+    python -m hexapod_doe.studies.coverage --repeats 200
+
+prints the tables of docs/statistics.md.
+"""
+
+import argparse
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from hexapod_doe.analysis.analysis import analyse
+from hexapod_doe.analysis.findings import Bounds, Estimate
+from hexapod_doe.analysis.options import Options
+from hexapod_doe.analysis.results import Analysis
+from hexapod_doe.choosing.attribution import alias_safe
+from hexapod_doe.choosing.prediction import rank_descending
+from hexapod_doe.designs.design import Design, fraction
+from hexapod_doe.fitting.model import corners, estimable_terms, labels
+from hexapod_doe.studies.simulated import Truth, repeated_levels, table_of
+from hexapod_doe.studies.tally import COMPARED, STATED, Tally
+
+
+class Study:
+    """Simulates campaigns of one truth and judges what the analysis says about them."""
+
+    def __init__(self, truth: Truth, design: Design, replicates: int, split: bool = False) -> None:
+        """Compute every target of the truth.
+
+        Args:
+            truth: How runs come about.
+            design: The cases.
+            replicates: Runs of each case.
+            split: Judge apart the sets whose prediction no name of an effect changes.
+        """
+        self.truth = truth
+        self.replicates = replicates
+        self.levels = repeated_levels(design, replicates)
+        self.grid = corners(design.factors)
+        self.labels = labels(self.grid)
+        self.mean = truth.mean(self.grid)
+        self.targets = {
+            'mean': self.mean,
+            'iqm': truth.iqm(self.grid),
+            'best_of:3': truth.best_of(self.grid, 3),
+        }
+        self.trimmed = truth.mean_of_best(self.grid, replicates - 3, replicates)
+        safe = alias_safe(self.levels, estimable_terms(self.levels, 2))
+        self.groups = (
+            {', alias-safe sets': safe, ', other sets': ~safe}
+            if split
+            else {'': np.ones_like(safe)}
+        )
+
+    def run(self, repeats: int, seed: int) -> Tally:
+        """Simulate and judge some campaigns."""
+        tally = Tally()
+        for stream in np.random.SeedSequence(seed).spawn(repeats):
+            rng = np.random.default_rng(stream)
+            table = table_of(self.levels, self.truth.simulate(self.levels, rng))
+            whole = analyse([table], Options())
+            self._judge(tally, whole, rng)
+            self._compare(tally, whole, analyse([table], Options(article=True)), rng)
+        return tally
+
+    def _judge(self, tally: Tally, analysis: Analysis, rng: np.random.Generator) -> None:
+        """Judge the intervals and probabilities that the analysis states."""
+
+        def cover(name: str, estimates: Mapping[str, Estimate], target: np.ndarray) -> None:
+            bounds = [estimates[label].ci for label in self.labels]
+            self._cover(tally, STATED, name, analysis.level, bounds, target)
+
+        for result in analysis.estimands:
+            cover(f'{result.name} of the runs', result.predictions, self.targets[result.name])
+        if analysis.averaging is not None:
+            cover('mean, averaged over models', analysis.averaging.predictions, self.mean)
+            self._choose(tally, 'averaged over models', analysis.averaging.choice)
+        parts = analysis.two_part
+        if parts is not None:
+            cover('probability of failure', parts.p_failure, self.truth.p_failure(self.grid))
+            cover(
+                'reward given success', parts.reward_success, self.truth.reward_success(self.grid)
+            )
+            cover('mean, two-part', parts.expected, self.mean)
+            bounds = [parts.run_interval[label] for label in self.labels]
+            new_run = self.truth.simulate(self.grid, rng)
+            self._cover(tally, STATED, 'one new run, two-part', analysis.level, bounds, new_run)
+            self._choose(tally, 'two-part', parts.choice)
+        self._judge_ranks(tally, analysis)
+        self._judge_confirmation(tally, analysis, rng)
+        self._judge_purchase(tally, analysis)
+
+    def _judge_ranks(self, tally: Tally, analysis: Analysis) -> None:
+        ranks = analysis.rank_uncertainty
+        if ranks is None:
+            return
+        bounds = [ranks.rank_interval[label] for label in self.labels]
+        self._cover(tally, STATED, 'rank', analysis.level, bounds, rank_descending(self.mean))
+        best = self.labels[int(self.mean.argmax())]
+        tally.claims.setdefault('the choice is the best set', []).append(
+            (ranks.p_best[analysis.choice], float(analysis.choice == best))
+        )
+
+    def _judge_confirmation(
+        self, tally: Tally, analysis: Analysis, rng: np.random.Generator
+    ) -> None:
+        rule = analysis.confirmation
+        if rule is None:
+            return
+        index = [self.labels.index(check.label) for check in rule.checks]
+        runs = [self.truth.simulate(self.grid.iloc[index], rng) for _ in range(rule.runs)]
+        bounds = [check.interval for check in rule.checks]
+        name = f'mean of {rule.runs} confirmation runs'
+        tally.cover(STATED, name, rule.level, bounds, np.mean(runs, axis=0))
+
+    def _judge_purchase(self, tally: Tally, analysis: Analysis) -> None:
+        purchase = analysis.purchase
+        if purchase is None:
+            return
+        mean = dict(zip(self.labels, self.mean, strict=True))
+        bounds = [item.loss_ci for item in purchase.breakage]
+        losses = [mean[item.label] - mean[item.remaining] for item in purchase.breakage]
+        tally.cover(STATED, 'loss of a device', analysis.level, bounds, np.array(losses))
+        claimed = {item.label: item.p_not_worse for item in purchase.sets}[purchase.cheapest]
+        kept = mean[purchase.cheapest] >= self.mean.max() - purchase.delta
+        tally.claims.setdefault('the cheapest set is not worse than delta', []).append(
+            (claimed, float(kept))
+        )
+
+    def _compare(
+        self, tally: Tally, whole: Analysis, article: Analysis, rng: np.random.Generator
+    ) -> None:
+        """Judge the classical intervals, which hold for the selected model and normal errors."""
+        ci, pi = zip(*((item.ci, item.pi) for item in whole.predictions), strict=True)
+        classical = [item.ci for item in article.predictions]
+        best = f'best {self.replicates - 3} of {self.replicates}'
+        for name, bounds, target in (
+            ('mean, final model after elimination', ci, self.mean),
+            ('one new run, final model', pi, self.truth.simulate(self.grid, rng)),
+            ("article's CI, for the mean of all runs", classical, self.mean),
+            (f"article's CI, for the mean of the {best}", classical, self.trimmed),
+        ):
+            self._cover(tally, COMPARED, name, whole.level, bounds, target)
+        self._choose(tally, 'final model, all runs', whole.ranking[0])
+        self._choose(tally, "article's, worst three dropped", article.ranking[0])
+
+    def _cover(
+        self,
+        tally: Tally,
+        kind: str,
+        name: str,
+        level: float,
+        bounds: Sequence[Bounds],
+        target: np.ndarray,
+    ) -> None:
+        """Tally the intervals of all combinations, by group."""
+        for suffix, inside in self.groups.items():
+            chosen = np.flatnonzero(inside)
+            tally.cover(
+                kind, name + suffix, level, [bounds[int(i)] for i in chosen], target[chosen]
+            )
+
+    def _choose(self, tally: Tally, rule: str, label: str) -> None:
+        value = self.mean[self.labels.index(label)]
+        outcome = (float(self.mean.max() - value), float(value == self.mean.max()))
+        tally.choices.setdefault(rule, []).append(outcome)
+
+
+def main() -> None:
+    """Run the study and print its tables."""
+    parser = argparse.ArgumentParser(prog='coverage', description=__doc__)
+    parser.add_argument('--repeats', type=int, default=200, help='campaigns (default 200)')
+    parser.add_argument('--seed', type=int, default=1)
+    parser.add_argument(
+        '--aliased', type=float, metavar='FG', help='add an effect FG, confounded with CE, and '
+        'judge apart the sets that it cannot mislead',
+    )  # fmt: skip
+    parser.add_argument('--no-failures', action='store_true', help='every run succeeds')
+    args = parser.parse_args()
+    truth = replace(Truth(), failure={'1': -50.0}) if args.no_failures else Truth()
+    if args.aliased is not None:
+        truth = replace(truth, success={**truth.success, 'FG': args.aliased})
+    study = Study(truth, fraction('quarter'), 10, split=args.aliased is not None)
+    tally = study.run(args.repeats, args.seed)
+    for frame in (tally.coverage_table(), tally.choice_table(), tally.claim_table()):
+        print(frame.to_string(index=False, float_format='{:.3f}'.format))
+        print()
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,160 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Reads a campaign's bags into tables of runs, one per design."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pandas as pd
+from hexapod_agent.observation import CHANNELS, LETTERS
+
+from hexapod_doe.bags.run_record import RunRecord, find_bags, is_complete, read_run
+from hexapod_doe.campaigns.campaign import PLAN_FILE
+from hexapod_doe.designs.plan_file import read_plan
+from hexapod_doe.designs.plan_types import Confirmation, PlanSettings
+from hexapod_doe.errors import BagError
+from hexapod_doe.fitting.model import EMPTY_SET
+from hexapod_doe.tables.table import CURVE_COLUMNS, RESPONSE, RunTable, TableError, build_rows
+
+RESPONSE_NAME = 'final_average_reward'
+_DESIGN_ROW = ('case', 'replicate', 'RunOrder')
+
+
+@dataclass
+class _Group:
+    """Bags of one design."""
+
+    title: str
+    design: str
+    bags: list[Path] = field(default_factory=list)
+
+
+def read_bags(paths: Sequence[Path], factors: Sequence[str] | None = None) -> list[RunTable]:
+    """Read all complete bags below some directories; each campaign is one table.
+
+    A campaign that follows another one (a foldover, added cases) joins it. The response is the
+    mean of the last `window` episode returns, as the last episode's `average_return` holds it.
+
+    Raises:
+        BagError: A directory is missing or a bag cannot be read.
+        TableError: There is no complete bag, or the runs cannot be analysed.
+    """
+    bags = [bag for path in paths for bag in find_bags(path)]
+    complete = [bag for bag in bags if is_complete(bag)]
+    if not complete:
+        raise TableError(f'{_names(paths)}: {len(bags)} bags, none of a complete run')
+    skipped = len(bags) - len(complete)
+    caveats = (f'{skipped} bags of unfinished runs are left out.',) if skipped else ()
+    names = tuple(factors or LETTERS)
+    return [_table(group, _names(paths), caveats, names) for group in _groups(complete)]
+
+
+def plan_rule(paths: Sequence[Path]) -> Confirmation:
+    """Return the confirmation rule of the first campaign's plan, or the default one."""
+    for path in paths:
+        settings = _settings(path)
+        if settings is not None:
+            return settings.confirmation
+    return Confirmation()
+
+
+def bag_responses(path: Path) -> dict[str, list[float]]:
+    """Return the responses of the complete runs below a directory, by their observations."""
+    responses: dict[str, list[float]] = {}
+    for bag in filter(is_complete, find_bags(path)):
+        run = read_run(bag)
+        label = ''.join(sorted(_observations(run))) or EMPTY_SET
+        responses.setdefault(label, []).append(_response(run))
+    return responses
+
+
+def _names(paths: Iterable[Path]) -> str:
+    return ', '.join(map(str, paths))
+
+
+def _campaign(bag: Path) -> Path | None:
+    """Return the campaign's directory: the nearest one above a bag that holds a plan."""
+    return next((parent for parent in bag.parents if (parent / PLAN_FILE).is_file()), None)
+
+
+def _settings(campaign: Path | None) -> PlanSettings | None:
+    if campaign is None or not (campaign / PLAN_FILE).is_file():
+        return None
+    return read_plan(campaign / PLAN_FILE).settings
+
+
+def _groups(bags: Iterable[Path]) -> list[_Group]:
+    by_campaign: dict[Path | None, list[Path]] = {}
+    for bag in bags:
+        by_campaign.setdefault(_campaign(bag.resolve()), []).append(bag)
+    groups: list[_Group] = []
+    for campaign, found in by_campaign.items():
+        settings = _settings(campaign)
+        if settings is None or not settings.follows or not groups:
+            title = campaign.name if campaign else found[0].parent.resolve().name
+            groups.append(_Group(title, settings.design if settings else ''))
+        elif settings is not None:
+            groups[-1].design = settings.design
+        groups[-1].bags += found
+    return groups
+
+
+def _table(
+    group: _Group, source: str, caveats: tuple[str, ...], factors: tuple[str, ...]
+) -> RunTable:
+    runs = [read_run(bag) for bag in group.bags]
+    raw = pd.DataFrame([_row(run, factors) for run in runs])
+    rows, found = build_rows(raw.dropna(axis=1), factors)
+    return RunTable(
+        title=group.title,
+        source=source,
+        response=RESPONSE_NAME,
+        factors=factors,
+        rows=rows,
+        caveats=(*caveats, *found),
+        design=group.design,
+        factor_names={channel.letter: channel.name for channel in CHANNELS if channel.letter},
+        curves=_curves(runs, rows),
+    )
+
+
+def _row(run: RunRecord, factors: Sequence[str]) -> dict[str, object]:
+    letters = _observations(run)
+    return {
+        'run_id': run.run_id,
+        **{name: int(run.metadata[name]) for name in _DESIGN_ROW if run.metadata.get(name)},
+        **{factor: 1 if factor in letters else -1 for factor in factors},
+        RESPONSE: _response(run),
+    }
+
+
+def _observations(run: RunRecord) -> str:
+    if 'observations' not in run.metadata:
+        raise BagError(f'run {run.run_id}: its metadata lacks the observations')
+    return run.metadata['observations']
+
+
+def _response(run: RunRecord) -> float:
+    return float(run.episodes['average_return'].iloc[-1])
+
+
+def _curves(runs: Iterable[RunRecord], rows: pd.DataFrame) -> pd.DataFrame:
+    """Return the learning curves of the runs, in the order of the rows."""
+    episodes = {run.run_id: run.episodes for run in runs}
+    parts = [
+        pd.DataFrame(
+            {
+                'run_id': row['run_id'],
+                'label': row['label'],
+                'case': row['case'],
+                'replicate': row['replicate'],
+                'episode': episodes[row['run_id']].index.to_numpy(),
+                'return': episodes[row['run_id']]['episode_return'].to_numpy(float),
+                'average': episodes[row['run_id']]['average_return'].to_numpy(float),
+            }
+        )
+        for row in rows.to_dict('records')
+    ]
+    return pd.concat(parts, ignore_index=True)[list(CURVE_COLUMNS)]

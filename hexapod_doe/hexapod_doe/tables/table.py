@@ -1,0 +1,176 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The tidy table that every analysis starts from, one row per run, and its validation."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import pandas as pd
+
+from hexapod_doe.errors import AnalysisError
+from hexapod_doe.fitting.model import labels
+
+RESPONSE = 'response'
+CURVE_COLUMNS = ('run_id', 'label', 'case', 'replicate', 'episode', 'return', 'average')
+
+
+class TableError(AnalysisError):
+    """A table cannot be analysed; the message names the row and the column."""
+
+
+@dataclass(frozen=True)
+class RunTable:
+    """Runs of one design.
+
+    `rows` has run_id, case, replicate, run_order, label, one column per factor, and response.
+    """
+
+    title: str
+    source: str
+    response: str
+    factors: tuple[str, ...]
+    rows: pd.DataFrame
+    caveats: tuple[str, ...] = ()
+    design: str = ''
+    factor_names: Mapping[str, str] = field(default_factory=dict)
+    curves: pd.DataFrame = field(default_factory=lambda: pd.DataFrame(columns=CURVE_COLUMNS))
+
+    @property
+    def levels(self) -> pd.DataFrame:
+        """Coded levels of the rows."""
+        return self.rows[list(self.factors)]
+
+    @property
+    def values(self) -> np.ndarray:
+        """The response (n,)."""
+        return self.rows[RESPONSE].to_numpy(float)
+
+
+def build_rows(raw: pd.DataFrame, factors: Sequence[str]) -> tuple[pd.DataFrame, tuple[str, ...]]:
+    """Return validated rows, and what a reader must know about them.
+
+    Args:
+        raw: Factor columns and `response`; run_id, case, StdOrder, replicate, RunOrder if known.
+        factors: Factor letters.
+
+    Raises:
+        TableError: A level is not ±1, a factor never changes, the response is not a number, is
+            the same everywhere or is nowhere, or a run occurs twice with two results.
+    """
+    _check_levels(raw, factors)
+    response, dropped = _finite_response(raw)
+    raw = raw.assign(**{RESPONSE: response})
+    raw, repeated = _without_repeats(raw[np.isfinite(response)].reset_index(drop=True))
+    _check_variation(raw, factors)
+    case, renumbered = _cases(raw, factors)
+    replicate = case.groupby(case).cumcount() + 1
+    if (
+        'replicate' in raw
+        and not pd.DataFrame({'c': case, 'r': raw['replicate']}).duplicated().any()
+    ):
+        replicate = raw['replicate']
+    rows = pd.DataFrame(
+        {
+            'run_id': raw.get('run_id', pd.Series([f'row {i + 1}' for i in raw.index])).astype(
+                str
+            ),
+            'case': case,
+            'replicate': replicate,
+            'run_order': raw.get('RunOrder', pd.Series(raw.index + 1)),
+            'label': labels(raw[list(factors)]),
+            **{factor: raw[factor].astype(int) for factor in factors},
+            RESPONSE: raw[RESPONSE].astype(float),
+        }
+    )
+    return rows, (*dropped, *repeated, *renumbered)
+
+
+def _check_levels(raw: pd.DataFrame, factors: Sequence[str]) -> None:
+    if raw.empty:
+        raise TableError('the table has no rows')
+    levels = raw[list(factors)].apply(pd.to_numeric, errors='coerce')
+    centre = (levels == 0).all(axis=1)
+    bad = ~levels.isin([-1, 1]) & ~centre.to_numpy()[:, None]
+    if bad.to_numpy().any():
+        row, position = np.argwhere(bad.to_numpy())[0]
+        factor = factors[position]
+        raise TableError(
+            f'row {row + 1}, column {factor!r}: level {raw[factor].iloc[row]}, expected -1 or 1 '
+            '(0 only in a centre point, where every factor is 0)'
+        )
+
+
+def _finite_response(raw: pd.DataFrame) -> tuple[np.ndarray, tuple[str, ...]]:
+    column = raw[RESPONSE]
+    values = pd.to_numeric(column, errors='coerce').to_numpy(float)
+    unread = np.isnan(values) & column.notna().to_numpy()
+    if unread.any():
+        row = int(np.argmax(unread))
+        raise TableError(f'row {row + 1}: response {column.iloc[row]!r}, expected a number')
+    missing = np.flatnonzero(~np.isfinite(values))
+    if len(missing) == len(values):
+        raise TableError('no row has a response')
+    if not len(missing):
+        return values, ()
+    rows = ', '.join(str(row + 1) for row in missing[:10]) + (' …' if len(missing) > 10 else '')
+    return values, (f'{len(missing)} rows have no response and are left out (row {rows}).',)
+
+
+def _check_variation(raw: pd.DataFrame, factors: Sequence[str]) -> None:
+    for factor in factors:
+        if raw[factor].nunique() < 2:
+            raise TableError(
+                f'factor {factor!r} is {raw[factor].iloc[0]} in every row: its effect cannot be '
+                'seen; leave it out with --factors'
+            )
+    if raw[RESPONSE].nunique() < 2:
+        raise TableError(
+            f'the response is {raw[RESPONSE].iloc[0]:g} in every row: there is nothing to explain'
+        )
+
+
+def _without_repeats(raw: pd.DataFrame) -> tuple[pd.DataFrame, tuple[str, ...]]:
+    """Drop a run that is listed twice; runs without a name of their own are replicates."""
+    for key in (['run_id'], ['RunOrder'], ['case', 'replicate'], ['StdOrder', 'replicate']):
+        if not set(key) <= set(raw.columns) or not raw.duplicated(key).any():
+            continue
+        first = raw.index[raw.duplicated(key)][0]
+        name = ', '.join(f'{column} {raw[column][first]}' for column in key)
+        same = raw.duplicated()
+        if not same[raw.duplicated(key)].all():
+            raise TableError(f'{name} occurs twice with different results, expected it once')
+        text = f'{int(same.sum())} rows repeat another one ({name}) and are left out.'
+        return raw[~same].reset_index(drop=True), (text,)
+    if raw.duplicated().any() and not {'replicate', 'run_id', 'RunOrder'} & set(raw.columns):
+        count = int(raw.duplicated().sum())
+        text = (
+            f'{count} rows equal another one; nothing names the runs, so they count as replicates.'
+        )
+        return raw, (text,)
+    return raw, ()
+
+
+def _cases(raw: pd.DataFrame, factors: Sequence[str]) -> tuple[pd.Series, tuple[str, ...]]:
+    """Number the cases as the table does, if it gives each combination one number of its own."""
+    combination = raw.groupby(list(factors), sort=False).ngroup()
+    for name in ('case', 'StdOrder'):
+        if name not in raw:
+            continue
+        pairs = pd.DataFrame({'combination': combination, 'number': raw[name]}).drop_duplicates()
+        if not (pairs['combination'].duplicated().any() or pairs['number'].duplicated().any()):
+            return raw[name], ()
+        if name == 'case':
+            text = "The column 'case' disagrees with the levels; cases are numbered by the levels."
+            return _yates(raw, factors), (text,)
+    return _yates(raw, factors), ()
+
+
+def _yates(raw: pd.DataFrame, factors: Sequence[str]) -> pd.Series:
+    weights = 2 ** np.arange(len(factors))
+    position = ((raw[list(factors)].to_numpy(float) > 0) * weights).sum(axis=1)
+    centre = (raw[list(factors)] == 0).all(axis=1).to_numpy()
+    return (
+        pd.Series(np.where(centre, 2 ** len(factors), position)).rank(method='dense').astype(int)
+    )

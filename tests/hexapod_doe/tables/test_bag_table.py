@@ -1,0 +1,93 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from hexapod_doe.designs.design import fraction
+from hexapod_doe.designs.plan_file import write_plan
+from hexapod_doe.designs.plan_table import make_plan
+from hexapod_doe.designs.plan_types import Confirmation
+from hexapod_doe.tables.bag_table import bag_responses, plan_rule, read_bags
+from hexapod_doe.tables.table import TableError
+
+from hexapod_doe import analyze
+
+WriteBag = Callable[..., Path]
+
+
+@pytest.fixture
+def campaign(tmp_path: Path, write_bag: WriteBag) -> Path:
+    """A campaign's folder: the plan of a 2^(7-3), and one bag for each of its rows."""
+    plan = make_plan(fraction('eighth'), confirmation=Confirmation(runs=7, level=0.9))
+    folder = tmp_path / 'tour'
+    write_plan(plan, folder / 'plan.csv')
+    for row in plan.rows.to_dict('records'):
+        metadata = {str(key): str(value) for key, value in row.items()}
+        write_bag(f'tour/runs/{row["run_id"]}', episodes=1 + row['case'], samples=0, **metadata)
+    return folder
+
+
+def test_a_campaign_is_a_table(campaign: Path) -> None:
+    (table,) = read_bags([campaign])
+    assert (table.title, table.design, len(table.rows)) == ('tour', 'eighth', 16)
+    assert table.factors == tuple('ABCDEFG')
+    assert table.factor_names['C'] == 'body orientation'
+    rows = table.rows.set_index('case')
+    assert rows.loc[16, 'label'] == 'ABCDEFG'
+    assert rows.loc[1, 'label'] == '(none)'
+    # The bags of these tests hold episode e's average return as 5·e, case c has c + 1 episodes.
+    assert (rows['response'] == 5.0 * rows.index).all()
+
+
+def test_learning_curves(campaign: Path) -> None:
+    (table,) = read_bags([campaign])
+    curve = table.curves[table.curves['case'] == 3]
+    assert curve['episode'].tolist() == [0, 1, 2, 3]
+    assert curve['return'].tolist() == [0.0, 10.0, 20.0, 30.0]
+
+
+def test_the_command_line_reads_a_campaign(
+    campaign: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(analyze, 'write_report', lambda analysis, out: out / 'index.html')
+    assert analyze.main([str(campaign), '--out', str(tmp_path / 'out')]) == 0
+    analysis = json.loads((tmp_path / 'out' / 'analysis.json').read_text())
+    assert analysis['design']['name'] == 'eighth'
+    assert analysis['options']['confirmation']['runs'] == 7
+    assert analysis['curves']['case03_rep01']['return'] == [0.0, 10.0, 20.0, 30.0]
+    assert [step['name'] for step in analysis['steps']] == ['initial', 'reduced']
+    assert analysis['purchase']['cheapest'] in analysis['ranking']
+
+
+def test_several_bags_are_a_table_too(campaign: Path) -> None:
+    bags = sorted((campaign / 'runs').iterdir())
+    (table,) = read_bags(bags)
+    assert len(table.rows) == 16
+
+
+def test_the_plan_fixes_the_rule_of_confirmation(campaign: Path, tmp_path: Path) -> None:
+    rule = plan_rule([campaign])
+    assert (rule.runs, rule.level) == (7, 0.9)
+    assert plan_rule([tmp_path]) == Confirmation()
+
+
+def test_unfinished_runs_are_left_out(campaign: Path, write_bag: WriteBag) -> None:
+    write_bag('tour/runs/late', episodes=1, samples=0, run_id='late', status='recording')
+    (table,) = read_bags([campaign])
+    assert len(table.rows) == 16
+    assert table.caveats[0] == '1 bags of unfinished runs are left out.'
+
+
+def test_no_complete_run(tmp_path: Path) -> None:
+    (tmp_path / 'empty').mkdir()
+    with pytest.raises(TableError, match='0 bags, none of a complete run'):
+        read_bags([tmp_path / 'empty'])
+
+
+def test_responses_of_confirmation_runs(tmp_path: Path, write_bag: WriteBag) -> None:
+    for number, letters in enumerate(('ABCDE', 'ABCDE', '')):
+        write_bag(f'confirm/{number}', episodes=2 + number, samples=0, observations=letters)
+    assert bag_responses(tmp_path / 'confirm') == {'ABCDE': [5.0, 10.0], '(none)': [15.0]}
