@@ -58,6 +58,11 @@ def test_each_jump_is_measured_until_the_next():
     assert [(r.time, r.jump) for r in found] == [(5.0, 1.0), (10.0, -1.0)]
 
 
+def test_a_jump_in_the_last_sample_is_none():
+    line = np.array([0.0, 0.0, 1.0])
+    assert responses(Track(np.arange(3.0), np.zeros(3), np.zeros(3), line)) == []
+
+
 def topics(namespace='/w'):
     return (
         Topic(f'{namespace}/odom', 'nav_msgs/msg/Odometry'),
