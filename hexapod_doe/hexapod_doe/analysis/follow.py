@@ -86,12 +86,13 @@ def read_track(bag: str | Path) -> Track:
 
 def responses(track: Track) -> list[Response]:
     """Measure each jump of the line; one in the last sample has nothing that follows it."""
-    jumps = np.flatnonzero(np.abs(np.diff(track.line[:-1])) > _LEAST_JUMP) + 1
+    jumps = np.flatnonzero(np.abs(np.diff(track.line)) > _LEAST_JUMP) + 1
     return [
         step_response(
             track.time[jump:end], track.offset[jump:end], track.line[jump] - track.line[jump - 1]
         )
         for jump, end in pairwise([*jumps, track.time.size])
+        if end - jump > 1
     ]
 
 

@@ -58,9 +58,10 @@ def test_each_jump_is_measured_until_the_next():
     assert [(r.time, r.jump) for r in found] == [(5.0, 1.0), (10.0, -1.0)]
 
 
-def test_a_jump_in_the_last_sample_is_none():
-    line = np.array([0.0, 0.0, 1.0])
-    assert responses(Track(np.arange(3.0), np.zeros(3), np.zeros(3), line)) == []
+def test_a_jump_in_the_last_sample_is_none_and_spoils_none():
+    line = np.array([0.0, 1.0, 1.0, 0.0])
+    (response,) = responses(Track(np.arange(4.0), np.zeros(4), np.full(4, 0.9), line))
+    assert (response.time, response.jump, response.overshoot) == (1.0, 1.0, 0.0)
 
 
 def topics(namespace='/w'):
