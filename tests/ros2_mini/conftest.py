@@ -11,9 +11,21 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from ros2_mini.cli import main
 
 HERE = Path(__file__).resolve().parent
 ROS2 = HERE.parents[1] / 'ros_ws' / 'src' / 'ros2_mini' / 'bin' / 'ros2'
+
+
+def end(process: subprocess.Popen[str]) -> None:
+    """End a process, gently if it can: one that is killed leaves its shared memory behind."""
+    process.terminate()
+    try:
+        process.wait(timeout=10)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+    process.stdout.close()
 
 
 class Prefix:
@@ -69,9 +81,7 @@ def start() -> Iterator[Callable[..., subprocess.Popen[str]]]:
 
     yield start_ros2
     for process in started:
-        process.kill()
-        process.wait()
-        process.stdout.close()
+        end(process)
 
 
 @pytest.fixture(scope='module')
@@ -82,6 +92,26 @@ def sample() -> Iterator[subprocess.Popen[str]]:
     )
     assert process.stdout.readline().startswith('sample is up')
     yield process
-    process.terminate()
-    process.wait(timeout=20)
-    process.stdout.close()
+    end(process)
+
+
+@pytest.fixture
+def output(capsys):
+    """Run a command line that succeeds and return what it prints."""
+
+    def run(*words: str) -> str:
+        assert main(words) == 0
+        return capsys.readouterr().out
+
+    return run
+
+
+@pytest.fixture
+def error(capsys):
+    """Run a command line that fails and return its complaint."""
+
+    def run(*words: str) -> str:
+        assert main(words) == 1
+        return capsys.readouterr().err
+
+    return run

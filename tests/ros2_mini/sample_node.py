@@ -10,6 +10,7 @@ from hexapod_interfaces.action import TrainRun
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import JointState
@@ -54,6 +55,8 @@ class Sample(LifecycleNode):
         self.create_timer(0.05, self.tick)
 
     def tick(self):
+        if self.ticks == 0:
+            print('sample is up', *sys.argv[1:2], flush=True)
         self.chatter.publish(String(data=f'tick {self.ticks}'))
         joints = JointState(name=['hip', 'knee'], position=[0.5, -1.0])
         joints.header.frame_id = 'base_link'
@@ -74,6 +77,8 @@ class Sample(LifecycleNode):
     def train(self, handle):
         pause = self.create_rate(20.0)
         for episode in range(handle.request.episodes):
+            if not rclpy.ok():
+                break
             if handle.is_cancel_requested:
                 print('canceled', flush=True)
                 handle.canceled()
@@ -88,16 +93,19 @@ class Sample(LifecycleNode):
 
 
 def main():
-    """Run the node; with the argument 'stubborn', print its remaining arguments first."""
+    """Run the node, which prints its first argument once it spins."""
     rclpy.init()
     node = Sample()
-    print('sample is up', *sys.argv[1:2], flush=True)
     executor = MultiThreadedExecutor(3)
     executor.add_node(node)
     try:
         executor.spin()
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
+    except rclpy_implementation.RCLError:
+        # A callback that is under way in another thread when the signal comes.
+        if rclpy.ok():
+            raise
     finally:
         node.destroy_node()
         rclpy.try_shutdown()

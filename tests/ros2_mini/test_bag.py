@@ -2,19 +2,25 @@
 # SPDX-License-Identifier: Apache-2.0
 
 import os
+import threading
 import time
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
+import rclpy
 import yaml
 from mcap.writer import Writer
-from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
 from ros2_mini.bag.messages import read_messages
 from ros2_mini.bag.metadata import Topic, read_metadata
 from ros2_mini.bag.offers import replay_profile
 from ros2_mini.cli import main
+from ros2_mini.discovery import wait_for
 from ros2_mini.errors import CommandError
+from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 
 START = 1_700_000_000_000_000_000
@@ -157,3 +163,42 @@ def test_topic_is_published_as_it_was(offers, reliable, latched, depth):
     assert (profile.reliability == ReliabilityPolicy.RELIABLE) == reliable
     assert (profile.durability == DurabilityPolicy.TRANSIENT_LOCAL) == latched
     assert profile.depth == depth
+
+
+@pytest.fixture
+def listener():
+    """Collect what arrives on `/a2` and `/clock` while a bag plays."""
+    context = rclpy.Context()
+    rclpy.init(context=context)
+    node = rclpy.create_node('listener', context=context)
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+    heard: dict[str, list] = {'/a2': [], '/clock': []}
+    node.create_subscription(String, '/a2', heard['/a2'].append, 100)
+    node.create_subscription(
+        Clock,
+        '/clock',
+        heard['/clock'].append,
+        QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT),
+    )
+    thread = threading.Thread(target=executor.spin)
+    thread.start()
+    yield heard
+    executor.shutdown()
+    rclpy.shutdown(context=context)
+    thread.join()
+    node.destroy_node()
+
+
+@pytest.mark.graph
+def test_play_at_twice_the_pace_with_a_clock(bag, listener):
+    words = ['--topics', '/a', '--remap', '/a:=/a2', '-r', '2', '--clock', '20']
+    assert main(['bag', 'play', str(bag), '--start-offset', '0.3', *words]) == 0
+    # /a has the messages 0, 2, ... 10, every 0.2 s; the first from 0.3 s on is number 4.
+    assert wait_for(lambda: len(listener['/a2']) >= 4, 10.0)
+    assert [message.data for message in listener['/a2']] == ['4', '6', '8', '10']
+    ticks = [tick.clock.sec * 10**9 + tick.clock.nanosec - START for tick in listener['/clock']]
+    # 20 Hz of wall time at twice the pace: the recorded time goes on by 0.1 s a tick.
+    assert ticks[0] == 3 * PERIOD
+    assert {second - first for first, second in pairwise(ticks)} == {PERIOD}
+    assert ticks[-1] <= 10 * PERIOD

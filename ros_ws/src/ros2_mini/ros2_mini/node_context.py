@@ -11,6 +11,7 @@ from importlib.resources import as_file, files
 
 import rclpy
 from rclpy.executors import ExternalShutdownException
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
@@ -49,7 +50,12 @@ def open_node(
     )
     try:
         yield node
-    except ExternalShutdownException as error:
+        if not rclpy.ok():
+            raise ExternalShutdownException
+    except (ExternalShutdownException, _rclpy.RCLError) as error:
+        if rclpy.ok():
+            raise
+        # What was just under way when the signal came returns early, or fails in its own way.
         raise SystemExit(int(signal.SIGTERM)) from error
     finally:
         node.destroy_node()

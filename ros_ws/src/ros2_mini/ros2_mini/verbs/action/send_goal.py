@@ -83,9 +83,9 @@ def _run_goal(node: Node, client: ActionClient, goal: Any, feedback: bool) -> No
     if not handle.accepted:
         print('Goal was rejected.')
         return
-    print(f'Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n')
     result = None
     try:
+        print(f'Goal accepted with ID: {bytes(handle.goal_id.uuid).hex()}\n')
         result = _wait(node, handle.get_result_async())
     finally:
         if result is None:

@@ -78,7 +78,7 @@ def main(args: argparse.Namespace) -> int:
     remaps = [word for rule in args.remap for word in ('--remap', rule)]
     cli_args = ['--ros-args', *remaps] if remaps else []
     with (
-        contextlib.suppress(KeyboardInterrupt),
+        contextlib.suppress(KeyboardInterrupt, SystemExit),
         open_node(_NODE_NAME, cli_args=cli_args) as node,
     ):
         _play(node, bag, topics, args)

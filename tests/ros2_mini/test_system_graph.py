@@ -1,0 +1,169 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The verbs that look at a graph, against a live node; texts as ros2cli 0.32.2 prints them."""
+
+import contextlib
+import importlib
+import re
+
+import pytest
+from ros2_mini import discovery
+from ros2_mini.cli import VERBS, main
+from ros2_mini.node_context import open_node
+
+pytestmark = [pytest.mark.graph, pytest.mark.system, pytest.mark.usefixtures('sample')]
+
+
+@pytest.fixture(scope='module')
+def connected(sample):
+    """A node that knows the graph."""
+    with open_node() as node:
+        discovery.wait_until_settled(node, discovery.DEFAULT_LIMIT)
+        yield node
+
+
+@pytest.fixture
+def shared(connected, monkeypatch):
+    """Let every verb work through one node: what to find is known already."""
+    for command, verbs in VERBS.items():
+        for verb in verbs:
+            module = importlib.import_module(f'ros2_mini.verbs.{command}.{verb}')
+            for name in ('open_node', 'graph_node'):
+                if hasattr(module, name):
+                    use = lambda *_, **__: contextlib.nullcontext(connected)  # noqa: E731
+                    monkeypatch.setattr(module, name, use)
+
+
+INFO = """/sample
+  Subscribers:
+    /listen: std_msgs/msg/String
+  Publishers:
+    /chatter: std_msgs/msg/String
+    /joint_states: sensor_msgs/msg/JointState
+    /parameter_events: rcl_interfaces/msg/ParameterEvent
+    /rosout: rcl_interfaces/msg/Log
+    /sample/transition_event: lifecycle_msgs/msg/TransitionEvent
+    /status: std_msgs/msg/String
+  Service Servers:
+    /sample/change_state: lifecycle_msgs/srv/ChangeState
+"""
+TOPICS = """/chatter [std_msgs/msg/String]
+/joint_states [sensor_msgs/msg/JointState]
+/listen [std_msgs/msg/String]
+/parameter_events [rcl_interfaces/msg/ParameterEvent]
+/rosout [rcl_interfaces/msg/Log]
+/sample/transition_event [lifecycle_msgs/msg/TransitionEvent]
+/status [std_msgs/msg/String]
+"""
+
+
+@pytest.mark.usefixtures('shared')
+def test_nodes(output, error):
+    assert output('node', 'list', '-c') == '1\n'
+    found = output('node', 'info', '/sample')
+    assert found.startswith(INFO)
+    assert found.endswith('  Action Servers:\n    /train: hexapod_interfaces/action/TrainRun\n'
+                          '  Action Clients:\n\n')  # fmt: skip
+    assert error('node', 'info', '/nope') == "Unable to find node '/nope'\n"
+
+
+@pytest.mark.usefixtures('shared')
+def test_topics(output, error):
+    assert output('topic', 'list', '-t') == TOPICS
+    assert output('topic', 'type', '/chatter') == 'std_msgs/msg/String\n'
+    counts = 'Type: std_msgs/msg/String\nPublisher count: 1\nSubscription count: 0\n'
+    assert output('topic', 'info', '/status') == counts
+    found = output('topic', 'info', '-v', '/status')
+    assert 'Node name: sample\n' in found
+    assert 'Durability: TRANSIENT_LOCAL\n' in found
+    assert error('topic', 'info', '/nope') == "Unknown topic '/nope'\n"
+    assert error('topic', 'type', '/nope') == ''
+
+
+@pytest.mark.parametrize(
+    ('name', 'expected'),
+    [
+        ('label', 'String value is: plain\n'),
+        ('count', 'Integer value is: 7\n'),
+        ('weights', 'Double values are: [0.5, 1.5]\n'),
+        ('fixed', 'Boolean value is: True\n'),
+    ],
+)
+@pytest.mark.usefixtures('shared')
+def test_parameter_values(name, expected, output):
+    assert output('param', 'get', '/sample', name) == expected
+
+
+@pytest.mark.usefixtures('shared')
+def test_parameters_can_be_set_within_their_limits(output, capsys):
+    assert output('param', 'set', '/sample', 'rate', '3.5') == 'Set parameter successful\n'
+    assert output('param', 'get', 'sample', 'rate', '--hide-type') == '3.5\n'
+    assert main(['param', 'set', '/sample', 'rate', '99.0']) == 0
+    assert capsys.readouterr().err.startswith('Setting parameter failed: ')
+
+
+DESCRIBED = """Parameter name: rate
+  Type: double
+  Description: Pace of nothing [Hz]
+  Constraints:
+    Min value: 0.5
+    Max value: 9.0
+Parameter name: fixed
+  Type: boolean
+  Constraints:
+    Read only: true
+"""
+
+
+@pytest.mark.usefixtures('shared')
+def test_parameters_are_listed_described_and_dumped(output, error):
+    assert '  leg.phase (type: double)\n' in output('param', 'list', '/sample', '--param-type')
+    assert output('param', 'list', '--filter', 'w').startswith('/sample:\n  weights\n')
+    assert output('param', 'describe', '/sample', 'rate', 'fixed') == DESCRIBED
+    dumped = output('param', 'dump', '/sample')
+    assert dumped.startswith('/sample:\n  ros__parameters:\n    count: 7\n    fixed: true\n')
+    assert '    leg:\n      phase: 0.25\n' in dumped
+    missing = ('param', 'get', '/nope', 'x', '--spin-time', '0.1')
+    assert error(*missing) == "Node not found: '/nope'\n"
+    assert error('param', 'get', '/sample', 'x') == "Parameter not set: 'x' of '/sample'\n"
+
+
+@pytest.mark.usefixtures('shared')
+def test_services(output, error):
+    assert '/set_flag [std_srvs/srv/SetBool]\n' in output('service', 'list', '-t')
+    assert output('service', 'type', '/set_flag') == 'std_srvs/srv/SetBool\n'
+    found = output('service', 'call', '/set_flag', 'std_srvs/srv/SetBool', '{data: true}')
+    assert found.endswith(
+        'requester: making request: std_srvs.srv.SetBool_Request(data=True)\n\n'
+        "response:\nstd_srvs.srv.SetBool_Response(success=True, message='flag True')\n\n"
+    )
+    message = error('service', 'call', '/set_flag', 'std_srvs/srv/SetBool', '{data: 5}')
+    assert message == "Failed to populate field: 'data' is 5, expected true or false\n"
+
+
+TRAIN = ('/train', 'hexapod_interfaces/action/TrainRun')
+
+
+@pytest.mark.usefixtures('shared')
+def test_actions(output):
+    assert output('action', 'list', '-t') == '/train [hexapod_interfaces/action/TrainRun]\n'
+    assert output('action', 'info', '/train') == (
+        'Action: /train\nAction clients: 0\nAction servers: 1\n    /sample\n'
+    )
+    found = output('action', 'send_goal', '-f', *TRAIN, '{episodes: 2, run_id: r}')
+    assert found.count('Feedback:\n    episode: ') == 2
+    assert re.search(r'Goal accepted with ID: [0-9a-f]{32}\n', found)
+    assert found.endswith('Goal finished with status: SUCCEEDED\n')
+    assert output('action', 'send_goal', *TRAIN).endswith('Goal was rejected.\n')
+
+
+@pytest.mark.usefixtures('shared')
+def test_lifecycle(output, error):
+    assert output('lifecycle', 'get') == '/sample: unconfigured [1]\n'
+    assert output('lifecycle', 'set', '/sample', 'configure') == 'Transitioning successful\n'
+    assert output('lifecycle', 'get', '/sample') == 'inactive [2]\n'
+    first = '- cleanup [2]\n\tStart: inactive\n\tGoal: cleaningup\n'
+    assert output('lifecycle', 'list', '/sample').startswith(first)
+    message = error('lifecycle', 'set', '/sample', 'configure')
+    assert message.startswith("Unknown transition 'configure' requested, available ones are: cl")

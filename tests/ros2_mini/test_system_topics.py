@@ -1,0 +1,59 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The verbs that must find a live node by themselves, or exchange messages with it."""
+
+import pytest
+import rclpy
+from ros2_mini import discovery
+from ros2_mini.node_context import open_node
+
+pytestmark = [pytest.mark.graph, pytest.mark.system, pytest.mark.usefixtures('sample')]
+
+
+def test_node_list_sees_every_one_of_several_participants(output):
+    contexts = [rclpy.Context() for _ in range(3)]
+    nodes = []
+    for number, context in enumerate(contexts):
+        rclpy.init(context=context)
+        nodes.append(rclpy.create_node(f'other_{number}', context=context))
+    try:
+        expected = '/other_0\n/other_1\n/other_2\n/sample\n'
+        assert [output('node', 'list') for _ in range(3)] == [expected] * 3
+    finally:
+        for node, context in zip(nodes, contexts, strict=True):
+            node.destroy_node()
+            rclpy.shutdown(context=context)
+
+
+def test_participants_of_this_host_are_counted():
+    before = discovery.local_participants()
+    assert before >= 1  # the sample
+    with open_node():
+        assert discovery.local_participants() == before + 1
+
+
+def test_echo(output, error):
+    # The status was published before: only a matching durability brings it.
+    assert output('topic', 'echo', '--once', '/status') == 'data: ready\n---\n'
+    found = output('topic', 'echo', '--once', '/joint_states', '--field', 'position')
+    assert found == "array('d', [0.5, -1.0])\n---\n"
+    message = error('topic', 'echo', '--once', '/joint_states', '--field', 'positio')
+    assert message.startswith("Invalid field 'positio': ")
+    missing = ('topic', 'echo', '/nope', '--spin-time', '0.1')
+    assert error(*missing) == 'Could not determine the type for the passed topic\n'
+
+
+def test_publish(output, error, sample):
+    found = output('topic', 'pub', '--once', '/listen', 'std_msgs/msg/String', 'data: hi')
+    assert found.endswith(
+        "publisher: beginning loop\npublishing #1: std_msgs.msg.String(data='hi')\n\n"
+    )
+    assert sample.stdout.readline() == 'heard hi\n'
+    message = error('topic', 'pub', '--once', '/listen', 'std_msgs/msg/String', 'text: hi')
+    assert message.startswith("Failed to populate field: 'text' is 'hi', expected a field of")
+
+
+def test_publish_waits_no_longer_than_told(error):
+    words = ('topic', 'pub', '-1', '--max-wait-time-secs', '0.2', '/nobody', 'std_msgs/Bool')
+    assert error(*words).startswith('Timed out waiting for subscribers: Expected 1')
