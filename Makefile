@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-slow lint type format bench clean clean-demo
+.PHONY: help setup demo test test-slow lint type format bench film clean clean-demo
 
 VENV ?= .venv
 PACKAGES := hexapod_sim hexapod_cpg hexapod_agent hexapod_doe
@@ -62,6 +62,10 @@ format: setup  ## rewrite the code in the project's style
 
 bench: setup  ## measure speed, as ratios within one run
 	@$(ENTER); for bench in tests/benchmarks/bench_*.py; do echo "== $$bench"; python $$bench || exit 1; done
+
+film: setup  ## film the robot on its way, without a display
+	@$(ENTER); ros2 run hexapod_agent film --out walk.gif --strip docs/images/walk.png \
+		--width 330 --height 250 --zoom 1.7 --seconds 1.5 --seed 3
 
 clean-demo:  ## forget the demo campaign
 	rm -rf $(DEMO)

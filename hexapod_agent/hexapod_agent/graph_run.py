@@ -8,6 +8,7 @@ from __future__ import annotations
 from array import array
 from collections.abc import Mapping
 from dataclasses import asdict
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,6 +28,7 @@ from numpy.typing import NDArray
 
 from hexapod_agent.checkpoint import save
 from hexapod_agent.config import AgentConfig
+from hexapod_agent.event_log import EventLog
 from hexapod_agent.messages import decode, message_class, outcome_from_message
 from hexapod_agent.observation import ACTION_SIZE, CHANNELS, ObservationSpec
 from hexapod_agent.peers import PeerError
@@ -62,6 +64,7 @@ class GraphRun:
         self._spec = spec
         self._config = config
         self._agent = agent
+        self._events: EventLog | None = None
         self._command = CpgCommand()
         self._episode = 0
         self._action = np.zeros(ACTION_SIZE, dtype=np.float32)
@@ -76,8 +79,10 @@ class GraphRun:
         )
 
     def destroy(self) -> None:
-        """Unsubscribe from every topic of the run."""
+        """Unsubscribe from every topic of the run, and close its curves."""
         self._lock_step.destroy()
+        if self._events is not None:
+            self._events.close()
 
     def progress(self) -> dict[str, object]:
         """Return what the diagnostics show."""
@@ -90,10 +95,11 @@ class GraphRun:
         await peers.configure('sim', 'task', asdict(self._config.task))
         await peers.configure('cpg', 'cpg', asdict(self._config.cpg.hopf))
         if goal.bag:
-            await peers.configure('recorder', '', {})
+            await peers.configure('recorder', '', {})  # a greeting: its answers arrive from now on
             await peers.start_recording(
                 goal.run_id, goal.bag, self._recorded_topics(), self._metadata()
             )
+            self._events = EventLog(Path(f'{goal.bag}.tensorboard'))
         for self._episode in range(goal.episodes):
             if self._goal_handle.is_cancel_requested:
                 self._goal_handle.canceled()
@@ -104,7 +110,9 @@ class GraphRun:
             if isinstance(self._agent, Trainer):
                 checkpoint = f'{goal.bag}.pt'
                 save(checkpoint, self._agent, with_replay=False)
-            bag = await peers.finish_recording(goal.episodes, {'checkpoint': checkpoint})
+            # A name, not a path: bags are moved, and their checkpoints with them.
+            found = {'checkpoint': Path(checkpoint).name}
+            bag = await peers.finish_recording(goal.episodes, found)
         self._goal_handle.succeed()
         return self._result('', checkpoint, bag)
 
@@ -201,6 +209,8 @@ class GraphRun:
     def _report(self, last_ns: int) -> None:
         """Publish the episode's result and the action's feedback."""
         summary = self._agent.summary
+        if self._events is not None:
+            self._events.add(summary)
         result = EpisodeResult(
             run_id=self._goal.run_id,
             episode=self._episode,

@@ -15,6 +15,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from hexapod_agent import checkpoint
 from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.env import HexapodLine
+from hexapod_agent.event_log import EventLog
 from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.summary import EpisodeSummary
 from hexapod_agent.training import Trainer
@@ -22,6 +23,7 @@ from hexapod_agent.training import Trainer
 CHECKPOINT = 'checkpoint.pt'  # with the replay buffer: to resume
 AGENT = 'agent.pt'  # without: to evaluate and to keep
 LOG = 'episodes.csv'
+EVENTS = 'tensorboard'  # folder of the same curves, for `tensorboard --logdir`
 
 
 def train_episode(env: HexapodLine, trainer: Trainer) -> EpisodeSummary:
@@ -46,7 +48,10 @@ def train(
     env = HexapodLine(trainer.spec.letters, trainer.config)
     directory.mkdir(parents=True, exist_ok=True)
     rows = _kept_rows(directory / LOG, trainer.episode)
-    with (directory / LOG).open('w', newline='') as file:
+    with (
+        (directory / LOG).open('w', newline='') as file,
+        EventLog(directory / EVENTS, trainer.episode) as events,
+    ):
         writer = csv.writer(file)
         for row in rows:
             writer.writerow(row)
@@ -57,6 +62,7 @@ def train(
                 writer.writerow(columns)
             writer.writerow(columns.values())
             file.flush()
+            events.add(summary)
             if trainer.episode % trainer.config.training.checkpoint_every == 0:
                 checkpoint.save(directory / CHECKPOINT, trainer, with_replay=True)
             report(summary)

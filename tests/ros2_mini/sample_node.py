@@ -4,6 +4,7 @@
 """A node with one of everything, for the system tests of the command line to look at."""
 
 import sys
+import time
 
 import rclpy
 from hexapod_interfaces.action import TrainRun
@@ -75,7 +76,6 @@ class Sample(LifecycleNode):
         return GoalResponse.ACCEPT if goal.episodes else GoalResponse.REJECT
 
     def train(self, handle):
-        pause = self.create_rate(20.0)
         for episode in range(handle.request.episodes):
             if not rclpy.ok():
                 break
@@ -84,7 +84,7 @@ class Sample(LifecycleNode):
                 handle.canceled()
                 return TrainRun.Result()
             handle.publish_feedback(TrainRun.Feedback(episode=episode, episode_return=1.5))
-            pause.sleep()
+            time.sleep(0.05)  # in a thread of its own; a rclpy Rate would not end with the node
         handle.succeed()
         return TrainRun.Result(episodes=handle.request.episodes, checkpoint='none')
 
