@@ -116,14 +116,16 @@ class ReplayBuffer:
         drawn = generator.integers(self._size, size=count)
         rows = self._starts[(self._first + drawn) % self.capacity]
         reward, last, bootstrap = self._returns(rows)
-        for target, source in (
-            (batch.observation, self._observation[rows]),
-            (batch.action, self._action[rows]),
-            (batch.reward, reward[:, None]),
-            (batch.next_observation, self._observation[last]),
-            (batch.bootstrap, bootstrap[:, None]),
+        for out, source, index in (
+            (batch.observation, self._observation, rows),
+            (batch.action, self._action, rows),
+            (batch.next_observation, self._observation, last),
         ):
-            target[agent] = torch.from_numpy(source)
+            torch.index_select(
+                torch.from_numpy(source), 0, torch.from_numpy(index), out=out[agent]
+            )
+        batch.reward[agent, :, 0] = torch.from_numpy(reward)
+        batch.bootstrap[agent, :, 0] = torch.from_numpy(bootstrap)
 
     def _returns(
         self, rows: NDArray[np.int64]
