@@ -4,7 +4,6 @@
 import asyncio
 import os
 import signal
-import subprocess
 import time
 from pathlib import Path
 
@@ -28,10 +27,6 @@ def run(tmp_path, capsys):
         return status, capsys.readouterr().out, (tmp_path / 'launch.log').read_text()
 
     return run_scripts
-
-
-def interrupt_after(seconds: float, number: signal.Signals = signal.SIGINT) -> subprocess.Popen:
-    return subprocess.Popen(['sh', '-c', f'sleep {seconds}; kill -{int(number)} {os.getpid()}'])
 
 
 def test_every_line_bears_the_name_of_its_process(run):
@@ -89,20 +84,17 @@ def test_process_is_started_again_as_often_as_it_may(run, tmp_path):
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_interrupt_ends_the_processes_and_is_no_failure(number, run):
-    killer = interrupt_after(0.5, number)
-    status, screen, _ = run('sleep 60', 'sleep 60', respawn=True)
-    assert killer.wait() == 0
+    # The launch is the parent of what it starts.
+    status, screen, _ = run(f'kill -{int(number)} $PPID; sleep 60', 'sleep 60', respawn=True)
     assert status == 0
     assert '[WARNING] [launch]: user interrupted with ' in screen
     assert screen.count("sending signal 'SIGINT'") == 2
 
 
 def test_stubborn_process_is_killed_with_its_children(run, tmp_path):
-    killer = interrupt_after(0.5)
     start = time.monotonic()
-    script = f'trap "" INT TERM; sleep 61 & echo $! > {tmp_path}/pid; while :; do sleep 1; done'
+    script = f'trap "" INT TERM; sleep 61 & echo $! > {tmp_path}/pid; kill -INT $PPID; wait'
     status, screen, _ = run(script, sigterm_timeout=0.2, sigkill_timeout=0.2)
-    assert killer.wait() == 0
     assert time.monotonic() - start < 5.0
     assert status == 0
     assert "failed to terminate '0.2' seconds after receiving 'SIGTERM'" in screen
