@@ -6,6 +6,9 @@
 import os
 import socket
 import tempfile
+from collections.abc import Iterator
+
+import pytest
 
 # The port says which domain is taken, to every test process of this machine: the same one that
 # ROS's own domain_coordinator binds.
@@ -33,3 +36,18 @@ os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 os.environ['OMP_NUM_THREADS'] = '1'
 _domain, _domain_holder = _reserve_domain()
 os.environ['ROS_DOMAIN_ID'] = str(_domain)
+
+
+@pytest.fixture(scope='module')
+def own_domain() -> Iterator[int]:
+    """Give a module's processes a domain that nodes of this test process were never in.
+
+    A node of an earlier test leaves the graph when Python frees its last handle, which may be
+    later than the test's end.
+    """
+    domain, holder = _reserve_domain()
+    before = os.environ['ROS_DOMAIN_ID']
+    os.environ['ROS_DOMAIN_ID'] = str(domain)
+    yield domain
+    os.environ['ROS_DOMAIN_ID'] = before
+    holder.close()

@@ -73,11 +73,16 @@ class Worker:
         self.gone = False
         self._seen = time.monotonic()
 
-    def lost(self) -> bool:
-        """Whether the server has been gone for a while."""
+    def present(self) -> bool:
+        """Whether the server is there; the name of an action may be that of a client alone."""
         if self.client.server_is_ready():
             self._seen = time.monotonic()
-        return time.monotonic() - self._seen > _LOST_S
+            return True
+        return False
+
+    def lost(self) -> bool:
+        """Whether the server has been gone for a while."""
+        return not self.present() and time.monotonic() - self._seen > _LOST_S
 
 
 class ManagerNode(Node):
@@ -126,7 +131,7 @@ class ManagerNode(Node):
             self._drop(worker)
         if self._campaign.finished:
             self.exit_status = self._close()
-        if self._workers:
+        if any(worker.present() for worker in self._workers.values()):
             self._alone_since = time.monotonic()
         elif time.monotonic() - self._alone_since > self._parameter('worker_timeout'):
             self._dashboard.log(

@@ -52,12 +52,13 @@ class Graph:
     def train(self, goal: TrainRun.Goal, action: str = 'train_run', timeout_s: float = 60.0):
         """Send a goal, wait for its end and return the result response."""
         client = ActionClient(self.nodes[0], TrainRun, action)
-        self.until(client.server_is_ready)
-        handle = self.result(client.send_goal_async(goal))
-        assert handle.accepted
-        response = self.result(handle.get_result_async(), timeout_s)
-        client.destroy()
-        return response
+        try:
+            self.until(client.server_is_ready)
+            handle = self.result(client.send_goal_async(goal))
+            assert handle.accepted
+            return self.result(handle.get_result_async(), timeout_s)
+        finally:
+            client.destroy()
 
 
 @pytest.fixture

@@ -115,3 +115,8 @@ def error(capsys):
         return capsys.readouterr().err
 
     return run
+
+
+@pytest.fixture(scope='module', autouse=True)
+def _isolated(own_domain: int) -> None:
+    """Keep the processes of these tests among themselves."""

@@ -77,3 +77,8 @@ def shell(tmp_path: Path) -> Iterator[Shell]:
     made = Shell(tmp_path)
     yield made
     made.stop()
+
+
+@pytest.fixture(scope='module', autouse=True)
+def _isolated(own_domain: int) -> None:
+    """Keep the processes of these tests among themselves."""

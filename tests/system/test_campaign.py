@@ -18,6 +18,7 @@ from rosbags.highlevel import AnyReader
 pytestmark = pytest.mark.system
 ALWAYS = {'joint_states', 'cpg/state', 'line_offset', 'step_outcome'}
 STEPS = 40
+ACTION = 'hexapod_interfaces/action/TrainRun'
 MANAGER = (
     'ros2 run hexapod_doe manager_node --ros-args -p plan:=plan.csv -p episodes:=2 '
     '-p record_every:=2 -p config:={config} -p local_workers:={workers}'
@@ -108,7 +109,9 @@ def test_what_is_done_is_not_done_again(shell, plan: Path, bags: list[Path]) -> 
 
 
 def test_a_worker_that_never_appears_is_one_clear_error(shell, plan: Path) -> None:
-    ended = shell.run(f'{manager(shell, 0)} -p worker_timeout:=2.0')
+    # Somebody else who waits for a worker is not one.
+    shell.start(f'ros2 action send_goal /ghost/train_run {ACTION} {{}}')
+    ended = shell.run(f'{manager(shell, 0)} -p worker_timeout:=7.0')
     assert ended.returncode == 1
-    assert 'no worker offers the action hexapod_interfaces/action/TrainRun' in ended.stdout
+    assert f'no worker offers the action {ACTION}' in ended.stdout
     assert 'ros2 launch hexapod_bringup worker.launch.xml' in ended.stdout
