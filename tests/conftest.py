@@ -9,6 +9,7 @@ import tempfile
 from collections.abc import Iterator
 
 import pytest
+from hypothesis import settings
 
 # The port says which domain is taken, to every test process of this machine: the same one that
 # ROS's own domain_coordinator binds.
@@ -28,6 +29,10 @@ def _reserve_domain() -> tuple[int, socket.socket]:
         return domain, holder
     raise RuntimeError(f'no free ROS domain from 1 to {_LAST_DOMAIN}: end other test runs')
 
+
+# A busy machine is slow, not wrong.
+settings.register_profile('shared_machine', deadline=None, derandomize=True)
+settings.load_profile('shared_machine')
 
 # Before anything imports rclpy: it reads the first two once.
 os.environ['ROS_PYTHON_CHECK_FIELDS'] = '1'
