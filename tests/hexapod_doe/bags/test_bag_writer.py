@@ -5,6 +5,7 @@
 
 import os
 import resource
+from contextlib import contextmanager
 
 import pytest
 import yaml
@@ -108,18 +109,24 @@ def test_topic_keeps_its_type(tmp_path, samples):
             writer.add_topic(Topic(samples.joints.name, samples.results.type_name))
 
 
-@pytest.fixture
+@contextmanager
 def full_disk():
-    """Lets files grow to 20 kB: the kernel refuses the rest, as it does when a disk is full."""
+    """Let files grow to 20 kB: the kernel refuses the rest, as it does when a disk is full.
+
+    Only around the writes: pytest's own output may be a longer file.
+    """
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, hard))
-    yield
-    resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
 
 
-def test_full_disk_is_one_clear_error_and_loses_no_whole_chunk(tmp_path, full_disk, samples):
+def test_full_disk_is_one_clear_error_and_loses_no_whole_chunk(tmp_path, samples):
     writer = BagWriter(tmp_path / 'r1', {'run_id': 'r1'})
-    with pytest.raises(BagError, match=r'r1: cannot write: File too large; the \d+ messages'):
+    refused = r'r1: cannot write: File too large; the \d+ messages'
+    with full_disk(), pytest.raises(BagError, match=refused):
         samples.fill(writer, 1000)
     recorded = writer.extent.messages
     with pytest.raises(BagError, match='an earlier write failed'):
