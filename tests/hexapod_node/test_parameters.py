@@ -3,10 +3,15 @@
 
 """Parameters come from a table or a dataclass, described and limited."""
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import pytest
-from hexapod_node.parameters import Parameter, config_table, descriptor
+import rclpy
+from hexapod_node.parameters import ConfigParameters, Parameter, config_table, declare, descriptor
+from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
+from rclpy.node import Node
+from rclpy.parameter import Parameter as RclpyParameter
 
 
 @dataclass(frozen=True)
@@ -42,3 +47,84 @@ def test_limits_are_of_the_type_of_the_value(default: float, kind: str) -> None:
     assert (limits.from_value, limits.to_value) == (0, 2)
     assert described.description == 'text'
     assert described.additional_constraints == 'unit: s'
+
+
+RATE = Parameter('rate', 1.0, 'how fast', range=(0.0, 10.0))
+GAIN = Parameter('gain', 0.5, 'how much', range=(0.0, 10.0), read_only=False)
+LOOP = Parameter('loop', False, 'whether', read_only=False)
+COUNT = Parameter('count', 3, 'how many', read_only=False)
+
+
+@pytest.fixture
+def started() -> Iterator[Callable[..., Node]]:
+    """Start a node with the table's parameters, as its command line would give them."""
+    rclpy.init()
+    nodes = []
+
+    def start(**given) -> Node:
+        overrides = [RclpyParameter(name, value=value) for name, value in given.items()]
+        nodes.append(Node('test', parameter_overrides=overrides))
+        declare(nodes[-1], (RATE, GAIN, LOOP, COUNT))
+        return nodes[-1]
+
+    yield start
+    for node in nodes:
+        node.destroy_node()
+    rclpy.shutdown()
+
+
+def set_one(node: Node, name: str, value: object) -> tuple[bool, str]:
+    (result,) = node.set_parameters([RclpyParameter(name, value=value)])
+    return result.successful, result.reason
+
+
+@pytest.mark.graph
+@pytest.mark.parametrize(('given', 'value'), [({}, 1.0), ({'rate': 0}, 0.0), ({'rate': 2.5}, 2.5)])
+def test_a_real_parameter_takes_a_whole_number_at_start(started, given, value) -> None:
+    node = started(**given)
+    parameter = node.get_parameter('rate')
+    assert (parameter.value, parameter.type_) == (value, RclpyParameter.Type.DOUBLE)
+    described = node.describe_parameter('rate')
+    assert described.type == RclpyParameter.Type.DOUBLE.value
+    assert described.read_only
+    assert not described.dynamic_typing
+
+
+@pytest.mark.graph
+def test_a_real_parameter_takes_a_whole_number_later(started) -> None:
+    node = started()
+    declare(node, [Parameter('late', 1.0, 'of a second table', read_only=False)])
+    assert set_one(node, 'gain', 2) == (True, '')
+    assert set_one(node, 'late', 7) == (True, '')
+    assert [node.get_parameter(name).value for name in ('gain', 'late')] == [2.0, 7.0]
+    assert isinstance(node.get_parameter('gain').value, float)
+    assert set_one(node, 'count', 4) == (True, '')
+    assert isinstance(node.get_parameter('count').value, int)
+
+
+@pytest.mark.graph
+@pytest.mark.parametrize(
+    ('name', 'value'), [('gain', True), ('gain', 'fast'), ('count', 2.0), ('loop', 1)]
+)
+def test_other_types_are_refused(started, name, value) -> None:
+    node = started()
+    done, reason = set_one(node, name, value)
+    assert not done
+    assert 'Wrong parameter type' in reason
+    with pytest.raises(InvalidParameterTypeException, match=name):
+        started(**{name: value})
+
+
+@pytest.mark.graph
+def test_limits_hold_for_whole_numbers_too(started) -> None:
+    assert set_one(started(), 'gain', 11)[0] is False
+    with pytest.raises(InvalidParameterValueException, match='rate'):
+        started(rate=11)
+
+
+@pytest.mark.graph
+def test_a_configuration_takes_whole_numbers(started) -> None:
+    node = started()
+    config = ConfigParameters(node, Config, 'walk')
+    assert set_one(node, 'walk.speed', 2) == (True, '')
+    assert config.get().speed == 2.0

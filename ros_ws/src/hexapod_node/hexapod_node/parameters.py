@@ -10,8 +10,10 @@ import inspect
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
+from functools import partial
 from itertools import pairwise
 from typing import Any, Generic, TypeVar
+from weakref import WeakSet
 
 from rcl_interfaces.msg import (
     FloatingPointRange,
@@ -25,6 +27,8 @@ from rclpy.parameter import Parameter as RclpyParameter
 
 Value = bool | int | float | str
 Config = TypeVar('Config')
+# Nodes that take whole numbers for real ones.
+_widening: WeakSet[Node] = WeakSet()
 
 
 @dataclass(frozen=True)
@@ -46,15 +50,54 @@ class Parameter:
 def declare(node: Node, table: Iterable[Parameter]) -> None:
     """Declare each parameter of the table with its description, unit and limits.
 
+    A whole number may be given for a real one, at start and later: `rate:=2` is `rate:=2.0`.
+
     Raises:
+        rclpy.exceptions.InvalidParameterTypeException: a value given at start is of another type.
         rclpy.exceptions.InvalidParameterValueException: a value given at start is not allowed.
     """
     table = tuple(table)
     choices = {parameter.name: parameter.choices for parameter in table if parameter.choices}
     if choices:
         node.add_on_set_parameters_callback(lambda values: _check_choices(values, choices))
+    if node not in _widening:
+        # One per node: rclpy strings together what several such callbacks return.
+        node.add_pre_set_parameters_callback(partial(_widened, node))
+        _widening.add(node)
     for parameter in table:
-        node.declare_parameter(parameter.name, parameter.default, descriptor(parameter))
+        value = _given_real(node, parameter)
+        node.declare_parameter(
+            parameter.name,
+            parameter.default if value is None else value,
+            descriptor(parameter),
+            ignore_override=value is not None,
+        )
+
+
+def _given_real(node: Node, parameter: Parameter) -> float | None:
+    """Return the real number that a whole one given at start stands for; None if none does.
+
+    rclpy holds a declared type against what the command line said. A declaration without a type
+    tells what that was.
+    """
+    if not isinstance(parameter.default, float):
+        return None
+    probe = ParameterDescriptor(dynamic_typing=True)
+    given = node.declare_parameter(parameter.name, parameter.default, probe)
+    node.undeclare_parameter(parameter.name)
+    return float(given.value) if given.type_ == RclpyParameter.Type.INTEGER else None
+
+
+def _widened(node: Node, parameters: list[RclpyParameter]) -> list[RclpyParameter]:
+    """Return the parameters, whole numbers for the node's real ones made real."""
+    return [
+        RclpyParameter(parameter.name, value=float(parameter.value))
+        if parameter.type_ == RclpyParameter.Type.INTEGER
+        and node.has_parameter(parameter.name)
+        and node.get_parameter(parameter.name).type_ == RclpyParameter.Type.DOUBLE
+        else parameter
+        for parameter in parameters
+    ]
 
 
 def descriptor(parameter: Parameter) -> ParameterDescriptor:
