@@ -12,7 +12,7 @@ from rclpy.action import (
 )
 from rclpy.node import Node
 
-from ros2_mini import discovery
+from ros2_mini import discovery, listing
 from ros2_mini.names import full_name
 from ros2_mini.node_context import graph_node
 from ros2_mini.topics import expanded
@@ -22,9 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of `ros2 action info`."""
     discovery.add_arguments(parser)
     parser.add_argument('action_name', help="Name of the ROS action (e.g. '/fibonacci')")
-    parser.add_argument(
-        '-t', '--show-types', action='store_true', help='Additionally show the action type'
-    )
+    listing.add_types_argument(parser, 'action')
     parser.add_argument(
         '-c', '--count', action='store_true',
         help='Only display the number of action clients and action servers',
@@ -42,8 +40,8 @@ def main(args: argparse.Namespace) -> int:
     print(f'Action: {args.action_name}')
     for role, nodes in roles.items():
         print(f'Action {role}: {len(nodes)}')
-        for name, types in [] if args.count else nodes:
-            print(f'    {name} [{", ".join(types)}]' if args.show_types else f'    {name}')
+        if not args.count:
+            listing.print_lines(nodes, args, indent='    ')
     return 0
 
 

@@ -5,7 +5,6 @@
 
 import argparse
 import signal
-import sys
 from types import FrameType
 from typing import Any
 
@@ -17,9 +16,10 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 
+from ros2_mini import values
 from ros2_mini.errors import CommandError
 from ros2_mini.interfaces import load_type
-from ros2_mini.message_fill import fill_message, read_values
+from ros2_mini.message_fill import fill_message
 from ros2_mini.message_text import message_to_yaml
 from ros2_mini.node_context import NODE_NAME_PREFIX, open_node
 
@@ -42,12 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         'action_type', help="Type of the ROS action (e.g. 'example_interfaces/action/Fibonacci')"
     )
-    source = parser.add_mutually_exclusive_group()
-    source.add_argument(
-        'goal', nargs='?', default='{}',
-        help="Goal request values in YAML format (e.g. '{order: 10}')",
-    )  # fmt: skip
-    source.add_argument('--stdin', action='store_true', help='Read goal from standard input')
+    values.add_arguments(parser, 'goal', "Goal request values in YAML format (e.g. '{order: 10}')")
     parser.add_argument(
         '-f', '--feedback', action='store_true', help='Echo feedback messages for the goal'
     )
@@ -57,7 +52,7 @@ def main(args: argparse.Namespace) -> int:
     """Send the goal and print what becomes of it; a rejected goal exits with 0, as upstream."""
     action_type = load_type(args.action_type, 'action')
     goal = action_type.Goal()
-    fill_message(goal, read_values(sys.stdin.read() if args.stdin else args.goal))
+    fill_message(goal, values.given(args))
     signal.signal(signal.SIGTERM, _terminate)
     name = f'{NODE_NAME_PREFIX}_send_goal_{args.action_type.replace("/", "_")}'
     # The node must outlive a signal, to cancel the goal.

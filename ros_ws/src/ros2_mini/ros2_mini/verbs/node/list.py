@@ -6,7 +6,7 @@
 import argparse
 import sys
 
-from ros2_mini import discovery
+from ros2_mini import discovery, listing
 from ros2_mini.names import node_names
 from ros2_mini.node_context import graph_node
 
@@ -17,17 +17,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '-a', '--all', action='store_true', help='Display all nodes even hidden ones'
     )
-    parser.add_argument(
-        '-c', '--count-nodes', action='store_true',
-        help='Only display the number of nodes discovered',
-    )  # fmt: skip
+    listing.add_count_argument(parser, 'node')
 
 
 def main(args: argparse.Namespace) -> int:
     """Print one node name a line."""
     with graph_node(args.spin_time) as node:
         names = node_names(node, hidden=args.all)
-    if args.count_nodes:
+    if args.count:
         print(len(names))
         return 0
     if len(set(names)) < len(names):

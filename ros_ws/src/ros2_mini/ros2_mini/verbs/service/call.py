@@ -4,13 +4,13 @@
 """`ros2 service call`: send a request and print the response."""
 
 import argparse
-import sys
 import time
 
+from ros2_mini import values
 from ros2_mini.calls import result_of
 from ros2_mini.errors import CommandError
 from ros2_mini.interfaces import load_type
-from ros2_mini.message_fill import fill_message, read_values
+from ros2_mini.message_fill import fill_message
 from ros2_mini.node_context import open_node
 
 
@@ -18,12 +18,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of `ros2 service call`."""
     parser.add_argument('service_name', help="Name of the ROS service (e.g. '/set_flag')")
     parser.add_argument('service_type', help="Type of the ROS service (e.g. 'std_srvs/srv/Empty')")
-    source = parser.add_mutually_exclusive_group()
-    source.add_argument(
-        'values', nargs='?', default='{}',
-        help="Values to fill the service request with in YAML format (e.g. '{a: 1, b: 2}')",
-    )  # fmt: skip
-    source.add_argument('--stdin', action='store_true', help='Read values from standard input')
+    values.add_arguments(
+        parser,
+        'values',
+        "Values to fill the service request with in YAML format (e.g. '{a: 1, b: 2}')",
+    )
     parser.add_argument(
         '-r', '--rate', metavar='N', type=float, help='Repeat the call at a specific rate in Hz'
     )
@@ -35,7 +34,7 @@ def main(args: argparse.Namespace) -> int:
         raise CommandError(f'rate must be greater than zero, but is {args.rate}')
     service_type = load_type(args.service_type, 'srv')
     request = service_type.Request()
-    fill_message(request, read_values(sys.stdin.read() if args.stdin else args.values))
+    fill_message(request, values.given(args))
     with open_node() as node:
         client = node.create_client(service_type, args.service_name)
         if not client.service_is_ready():

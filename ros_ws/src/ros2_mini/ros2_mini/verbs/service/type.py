@@ -5,7 +5,7 @@
 
 import argparse
 
-from ros2_mini import discovery
+from ros2_mini import discovery, listing
 from ros2_mini.node_context import graph_node
 
 
@@ -18,7 +18,4 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(args: argparse.Namespace) -> int:
     """Print the types of the service; print nothing and fail if there is no such service."""
     with graph_node(args.spin_time) as node:
-        types = dict(node.get_service_names_and_types()).get(args.service_name, [])
-    for name in types:
-        print(name)
-    return 0 if types else 1
+        return listing.print_types(node.get_service_names_and_types(), args.service_name)

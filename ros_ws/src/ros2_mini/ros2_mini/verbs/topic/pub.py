@@ -4,7 +4,6 @@
 """`ros2 topic pub`: publish a message, once or at a rate."""
 
 import argparse
-import sys
 import time
 from typing import Any
 
@@ -12,11 +11,11 @@ import rclpy
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 
-from ros2_mini import qos
+from ros2_mini import qos, values
 from ros2_mini.discovery import wait_for
 from ros2_mini.errors import CommandError
 from ros2_mini.interfaces import load_type
-from ros2_mini.message_fill import StampSetter, fill_message, read_values
+from ros2_mini.message_fill import StampSetter, fill_message
 from ros2_mini.node_context import open_node
 
 
@@ -24,12 +23,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of `ros2 topic pub`."""
     parser.add_argument('topic_name', help="Name of the ROS topic (e.g. '/chatter')")
     parser.add_argument('message_type', help="Type of the ROS message (e.g. 'std_msgs/String')")
-    source = parser.add_mutually_exclusive_group()
-    source.add_argument(
-        'values', nargs='?', default='{}',
-        help="Values to fill the message with in YAML format (e.g. 'data: Hello World')",
-    )  # fmt: skip
-    source.add_argument('--stdin', action='store_true', help='Read values from standard input')
+    values.add_arguments(
+        parser,
+        'values',
+        "Values to fill the message with in YAML format (e.g. 'data: Hello World')",
+    )
     parser.add_argument(
         '-r', '--rate', metavar='N', type=_positive, default=1.0, help='Rate in Hz (default: 1)'
     )
@@ -68,8 +66,7 @@ def _positive(text: str) -> float:
 def main(args: argparse.Namespace) -> int:
     """Publish until interrupted, or as often as asked."""
     message = load_type(args.message_type, 'msg')()
-    values = read_values(sys.stdin.read() if args.stdin else args.values)
-    stamps = fill_message(message, values)
+    stamps = fill_message(message, values.given(args))
     with open_node(args.node_name, use_sim_time=args.use_sim_time) as node:
         publisher = node.create_publisher(type(message), args.topic_name, qos.profile(args))
         _wait_for_subscriptions(publisher, args)
