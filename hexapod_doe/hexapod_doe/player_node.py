@@ -9,6 +9,8 @@ import time
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from diagnostic_msgs.msg import DiagnosticStatus
+from hexapod_node.diagnostics import Diagnostics, Health
 from hexapod_node.parameters import Parameter, declare
 from hexapod_node.raw_topics import message_class
 from hexapod_node.spin import run
@@ -83,11 +85,13 @@ class PlayerNode(Node):
         if self._playback.finished:
             raise BagError(f'bag {self._bag.path}: empty, expected a message to play')
         self._played = 0
+        self._now_ns = self._bag.start_ns
         self.create_service(Trigger, '~/pause', self._on_pause)
         self.create_service(Trigger, '~/resume', self._on_resume)
         self.create_service(Trigger, '~/step', self._on_step)
         steady = RclpyClock(clock_type=ClockType.STEADY_TIME)
         self._timer = self.create_timer(0.0, self._on_due, clock=steady)
+        Diagnostics(self, self._health)
 
     def _value(self, name: str) -> Any:
         return self.get_parameter(name).value
@@ -116,11 +120,20 @@ class PlayerNode(Node):
             self._bag_publishers[message.topic].publish(message.data)
         self._clock_publisher.publish(Clock(clock=time_message(frame.time_ns)))
         self._played += len(frame.messages)
+        self._now_ns = frame.time_ns
         if self._playback.finished:
             for publisher in self._bag_publishers.values():
                 publisher.wait_for_all_acked(_DRAIN)
             self.get_logger().info(f'played {self._played} messages of {self._bag.path}')
             self.exit_status = 0
+
+    def _health(self) -> Health:
+        values = {
+            'bag': self._bag.path,
+            'messages': self._played,
+            'seconds': f'{(self._now_ns - self._bag.start_ns) * 1e-9:.3f}',
+        }
+        return DiagnosticStatus.OK, 'paused' if self._playback.paused else 'playing', values
 
     def _on_pause(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Hold before the next instant."""

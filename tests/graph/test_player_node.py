@@ -11,10 +11,12 @@ from array import array
 from pathlib import Path
 
 import pytest
+from diagnostic_msgs.msg import DiagnosticArray
+from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.bags.bag_writer import BagWriter
 from hexapod_doe.bags.rosbag2 import OfferedQos, Topic
 from hexapod_doe.errors import BagError
-from hexapod_doe.player_node import PlayerNode
+from hexapod_doe.player_node import CLOCK_TYPE, PlayerNode
 from hexapod_node.qos import RECORD
 from hexapod_node.raw_topics import subscribe_raw
 from rclpy.parameter import Parameter
@@ -28,6 +30,7 @@ from std_srvs.srv import Trigger
 pytestmark = pytest.mark.graph
 
 PERIOD_NS = 25_000_000
+SAMPLE = Path(__file__).resolve().parents[2] / 'bags' / 'sample'
 TYPES = {'/w0/joint_states': 'sensor_msgs/msg/JointState', '/w0/clock': 'rosgraph_msgs/msg/Clock'}
 
 
@@ -112,6 +115,42 @@ def test_real_time_is_kept_within_2_ms(graph, bag):
     times = [came for _, _, came in listener.heard]
     errors = [abs(came - times[0] - k * PERIOD_NS * 1e-9) for k, came in enumerate(times)]
     assert statistics.median(errors) < 2e-3
+
+
+def test_a_whole_graph_is_kept_within_2_ms(graph):
+    topics = {name: kind for name, kind in BagFile(SAMPLE).types.items() if kind != CLOCK_TYPE}
+    sampled = {name: kind for name, kind in topics.items() if 'episode_result' not in name}
+    listener = Listener(graph, sampled)
+    player = add_heard_player(graph, SAMPLE, start=14.0, topics=' '.join(sampled))
+    ask(graph, 'resume')
+    graph.until(lambda: player.exit_status == 0 and len(listener.heard) == player._played)
+    stamps = [message.time_ns for message in player._messages()]
+    first = listener.heard[0][2]
+    errors = [
+        abs(came - first - (stamp - stamps[0]) * 1e-9)
+        for (_, _, came), stamp in zip(listener.heard, stamps, strict=True)
+    ]
+    assert statistics.median(errors) < 2e-3
+
+
+def test_rate_may_be_a_whole_number(graph):
+    listener = Listener(graph, {'/hexapod/odom': 'nav_msgs/msg/Odometry'})
+    player = add_heard_player(graph, SAMPLE, rate=0, topics='odom')
+    began = time.monotonic()
+    ask(graph, 'resume')
+    graph.until(lambda: player.exit_status == 0 and len(listener.heard) == 601)
+    assert time.monotonic() - began < 15.0 / 5
+
+
+def test_it_reports_its_health(graph, bag):
+    reports: list[DiagnosticArray] = []
+    graph.nodes[0].create_subscription(DiagnosticArray, '/diagnostics', reports.append, 10)
+    add_player(graph, bag)
+    graph.until(lambda: reports)
+    (status,) = reports[0].status
+    assert (status.level, status.name, status.message) == (b'\0', '/player: state', 'paused')
+    values = {entry.key: entry.value for entry in status.values}
+    assert values == {'bag': str(bag), 'messages': '0', 'seconds': '0.000'}
 
 
 def test_start_and_topics(graph, bag):
