@@ -6,19 +6,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import lru_cache
 from importlib import import_module
 from typing import Any
 
 import numpy as np
 from geometry_msgs.msg import TwistStamped, Vector3, WrenchStamped
 from hexapod_interfaces.msg import CpgState, FootContacts, LineOffset, StepOutcome
-from hexapod_sim.robot import JOINTS, LEGS
+from hexapod_sim.robot import LEGS
 from hexapod_sim.sensors import foot_forces
 from hexapod_sim.task import Outcome
 from numpy.typing import NDArray
 from sensor_msgs.msg import Imu, JointState, Range
 
+from hexapod_agent.joint_names import joint_order
 from hexapod_agent.observation import Channel
 
 Reading = NDArray[np.float64]
@@ -34,8 +34,8 @@ def message_class(name: str) -> type:
 def decode(channel: Channel, messages: Mapping[str, Any]) -> Readings:
     """Return what a channel reads from the messages of its topics.
 
-    Joint arrays are matched by joint name: a driver may publish them in its own order and with
-    further joints.
+    Joint arrays are matched by joint name: a driver may publish them in its own order, with
+    further joints, and with a prefix before the names.
 
     Raises:
         ValueError: a joint is missing or an array is too short; the text names topic and field.
@@ -75,15 +75,11 @@ def _by_joint(topic: str, message: JointState, field: str) -> Reading:
             f'{topic}: {field} has {len(values)} numbers for {len(message.name)} names, '
             'expected one each'
         )
-    return values[_joint_order(topic, tuple(message.name))]
-
-
-@lru_cache(maxsize=16)
-def _joint_order(topic: str, names: tuple[str, ...]) -> NDArray[np.intp]:
-    missing = [joint for joint in JOINTS if joint not in names]
-    if missing:
-        raise ValueError(f'{topic}: name lacks {", ".join(missing)}, expected all 18 joints')
-    return np.array([names.index(joint) for joint in JOINTS])
+    try:
+        order = joint_order(message.name)
+    except ValueError as error:
+        raise ValueError(f'{topic}: {error}') from error
+    return values if order is None else values[order]
 
 
 def _cpg_state(messages: Mapping[str, CpgState]) -> Readings:

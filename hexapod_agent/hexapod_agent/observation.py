@@ -6,12 +6,25 @@
 Subscriptions, input sizes, factors of the experiment and report labels all read this table.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from hexapod_cpg.mapping import ACTION_SIZE
-from hexapod_sim.robot import LEGS, NO_LOAD_SPEED, TORQUE_LIMIT
+from hexapod_sim.robot import (
+    BASE_FRAME,
+    FOOT_FRAMES,
+    GRAVITY,
+    HEIGHT_FRAME,
+    HEIGHT_RANGE_MAX,
+    IMU_FRAME,
+    LEGS,
+    NO_LOAD_SPEED,
+    ODOM_FRAME,
+    TORQUE_LIMIT,
+    TOTAL_MASS,
+)
 from numpy.typing import NDArray
 
 PREVIOUS_ACTION = 'previous_action'
@@ -34,6 +47,9 @@ class Channel:
         scales: Deviation from the center that is observed as 1, for each reading, in its unit.
         device: What yields it on a physical robot.
         centers: Value that is observed as 0, for each reading, in its unit; empty for zeros.
+        limits: Largest magnitude that a working device gives in walking, for each reading, in its
+            unit; what lies beyond is in another unit. Empty if nothing measures the channel.
+        frames: Frame of each topic; empty if its values have no axes, as joint angles.
     """
 
     letter: str
@@ -46,6 +62,8 @@ class Channel:
     scales: tuple[float, ...]
     device: str
     centers: tuple[float, ...] = ()
+    limits: tuple[float, ...] = ()
+    frames: tuple[str, ...] = ()
 
     @property
     def size(self) -> int:
@@ -67,11 +85,11 @@ CHANNELS = (
     Channel(
         '', 'joint angles and velocities', ('joint_states',), 'sensor_msgs/msg/JointState',
         ('joint_angles', 'joint_velocities'), (18, 18), ('rad', 'rad/s'), (1.0, NO_LOAD_SPEED),
-        'joint encoders',
+        'joint encoders', limits=(math.pi / 2, 2 * NO_LOAD_SPEED),
     ),
     Channel(
         '', 'oscillator state', ('cpg/state',), 'hexapod_interfaces/msg/CpgState',
-        ('oscillator',), (12,), ('1',), (1.2,), 'none (computed)',
+        ('oscillator',), (12,), ('1',), (1.2,), 'none (computed)', limits=(2.0,),
     ),
     Channel(
         '', 'previous action', (), '', (PREVIOUS_ACTION,), (ACTION_SIZE,), ('1',), (1.0,), 'none',
@@ -79,35 +97,41 @@ CHANNELS = (
     Channel(
         '', 'line offset', ('line_offset',), 'hexapod_interfaces/msg/LineOffset',
         ('line_offset',), (1,), ('m',), (1.0,), 'line sensor or localisation',
+        limits=(10.0,), frames=(ODOM_FRAME,),
     ),
     Channel(
         'A', 'joint torques', ('joint_torques',), 'sensor_msgs/msg/JointState',
         ('joint_torques',), (18,), ('N·m',), (TORQUE_LIMIT,), '18 current sensors',
+        limits=(2 * TORQUE_LIMIT,),
     ),
     Channel(
         'B', 'body linear velocity', ('body/twist',), 'geometry_msgs/msg/TwistStamped',
         ('linear_velocity',), (3,), ('m/s',), (0.5,), 'estimator or optical flow',
+        limits=(2.0,), frames=(BASE_FRAME,),
     ),
     Channel(
         'C', 'body orientation', ('imu/data',), 'sensor_msgs/msg/Imu',
         ('orientation',), (4,), ('1',), (1.0,), 'IMU with fusion',
+        limits=(1.02,), frames=(IMU_FRAME,),
     ),
     Channel(
         'D', 'body angular velocity', ('imu/data_raw',), 'sensor_msgs/msg/Imu',
         ('angular_velocity',), (3,), ('rad/s',), (2.0,), 'IMU',
+        limits=(8.0,), frames=(IMU_FRAME,),
     ),
     Channel(
         'E', 'body height', ('body/height',), 'sensor_msgs/msg/Range',
         ('height',), (1,), ('m',), (0.05,), 'range finder', (0.13,),
+        limits=(HEIGHT_RANGE_MAX,), frames=(HEIGHT_FRAME,),
     ),
     Channel(
         'F', 'foot forces', tuple(f'foot_force/{leg}' for leg in LEGS),
         'geometry_msgs/msg/WrenchStamped', ('foot_forces',), (12,), ('N',), (20.0,),
-        'six load cells',
+        'six load cells', limits=(8 * TOTAL_MASS * GRAVITY,), frames=FOOT_FRAMES,
     ),
     Channel(
         'G', 'foot contacts', ('foot_contacts',), 'hexapod_interfaces/msg/FootContacts',
-        ('foot_contacts',), (6,), ('1',), (1.0,), 'six switches',
+        ('foot_contacts',), (6,), ('1',), (1.0,), 'six switches', limits=(1.0,),
     ),
 )  # fmt: skip
 LETTERS = ''.join(channel.letter for channel in CHANNELS)

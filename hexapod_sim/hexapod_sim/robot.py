@@ -72,6 +72,8 @@ FEMUR_MASS = 0.10
 TIBIA_MASS = 0.055
 FOOT_MASS = 0.005
 TOTAL_MASS = BODY_MASS + len(LEGS) * (COXA_MASS + FEMUR_MASS + TIBIA_MASS + FOOT_MASS)
+# Gravity [m/s^2], towards the floor: MuJoCo's default, which the model keeps.
+GRAVITY = 9.81
 
 # Servos. Stall torque [N m] and no-load speed [rad/s] (59 rev/min) of the AX-12A class.
 TORQUE_LIMIT = 1.5

@@ -32,6 +32,10 @@ def test_joints_and_actuators_follow_the_joint_vector(model: mujoco.MjModel) -> 
     assert [model.actuator(i).trnid[0] for i in range(model.nu)] == list(range(1, model.njnt))
 
 
+def test_gravity_is_that_of_the_model(model: mujoco.MjModel) -> None:
+    assert model.opt.gravity.tolist() == [0.0, 0.0, -robot.GRAVITY]
+
+
 def test_timing_divides_the_control_period(model: mujoco.MjModel) -> None:
     assert model.opt.timestep == robot.PHYSICS_STEP_NS * 1e-9
     assert robot.TARGET_PERIOD_NS * robot.SUBSTEPS == robot.CONTROL_PERIOD_NS
