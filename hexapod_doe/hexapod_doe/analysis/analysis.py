@@ -65,7 +65,7 @@ def _analyse(
         base,
         table=base.table.assign(failed=False if failures is None else failures.failed),
         choice=outlook.ranking[0],
-        choice_rule=f'highest expected response by the {outlook.model}',
+        choice_rule=outlook.choice_rule,
         two_part=None if failures is None else failures.record,
         estimands=estimates(table, options.level, rng),
         **conclude(table, outlook, options, rng),

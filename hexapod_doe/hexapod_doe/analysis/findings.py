@@ -75,6 +75,7 @@ class RankUncertainty:
 
     draws: int
     p_best: Mapping[str, float]
+    """Combinations of equal value share their chance, so that all sum to 1."""
     p_top3: Mapping[str, float]
     rank_interval: Mapping[str, tuple[int, int]]
     """Ranks that hold with the analysis' confidence."""

@@ -63,6 +63,13 @@ class Outlook:
         """Labels, best first."""
         return tuple(self.labels[i] for i in np.argsort(rank_descending(self.fits)))
 
+    @property
+    def choice_rule(self) -> str:
+        """Why the first of the ranking comes first, in a sentence."""
+        rule = f'highest expected response by the {self.model}'
+        equal = int(np.isclose(self.fits, np.nanmax(self.fits), rtol=1e-10, atol=0).sum())
+        return rule if equal == 1 else f'{rule}; of {equal} equal sets the one with fewest letters'
+
 
 def final_outlook(state: Pipeline, rng: np.random.Generator) -> Outlook:
     """Return the outlook of a pipeline's final model."""

@@ -6,9 +6,13 @@
 from collections.abc import Sequence
 
 import numpy as np
+from scipy import stats
 
 from hexapod_doe.analysis.findings import RankUncertainty
 from hexapod_doe.choosing.outlook import Outlook
+
+_DIGITS = 10
+"""Values that agree to so many digits are equal: the model doesn't tell their sets apart."""
 
 
 def rank_uncertainty(outlook: Outlook, level: float) -> RankUncertainty | None:
@@ -27,7 +31,6 @@ def rank_uncertainty(outlook: Outlook, level: float) -> RankUncertainty | None:
     """
     if outlook.draws is None or outlook.stated is None:
         return None
-    ranks = ranks_of(outlook.draws)
     low, high = np.quantile(
         ranks_of(outlook.stated.draws),
         [(1 - level) / 2, (1 + level) / 2],
@@ -36,8 +39,8 @@ def rank_uncertainty(outlook: Outlook, level: float) -> RankUncertainty | None:
     )
     return RankUncertainty(
         draws=len(outlook.draws),
-        p_best=_map(outlook.labels, (ranks == 1).mean(axis=0)),
-        p_top3=_map(outlook.labels, (ranks <= 3).mean(axis=0)),
+        p_best=_map(outlook.labels, share_of_top(outlook.draws, 1)),
+        p_top3=_map(outlook.labels, share_of_top(outlook.draws, 3)),
         rank_interval={
             label: (int(a), int(b)) for label, a, b in zip(outlook.labels, low, high, strict=True)
         },
@@ -51,6 +54,20 @@ def ranks_of(draws: np.ndarray) -> np.ndarray:
     order = np.argsort(-draws, axis=1, kind='stable')
     np.put_along_axis(ranks, order, np.arange(1, draws.shape[1] + 1), axis=1)
     return ranks
+
+
+def share_of_top(draws: np.ndarray, top: int) -> np.ndarray:
+    """Return the probability that each combination is among the best `top` (m,).
+
+    Combinations of equal value, such as those that differ in a factor which the model has not
+    kept, share the places that they take: they sum to `top`.
+    """
+    scale = np.abs(draws).max(axis=1, keepdims=True) + np.finfo(float).tiny
+    values = -np.round(draws / scale, _DIGITS)
+    first = stats.rankdata(values, method='min', axis=1)
+    last = stats.rankdata(values, method='max', axis=1)
+    places = np.clip(top + 1 - first, 0, last + 1 - first)
+    return (places / (last + 1 - first)).mean(axis=0)
 
 
 def groups(
