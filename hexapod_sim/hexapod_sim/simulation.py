@@ -113,13 +113,10 @@ class Simulation:
     def pose(self) -> tuple[float, float, float, float, float, float]:
         """Return x, y, z [m] and roll, pitch, yaw [rad] of base_link in odom.
 
-        Angles are the fixed-axis roll, pitch, yaw of REP-103.
+        Angles are those of `roll_pitch_yaw`.
         """
         x, y, z, qw, qx, qy, qz = self._qpos[:7].tolist()
-        roll = math.atan2(2 * (qw * qx + qy * qz), 1 - 2 * (qx * qx + qy * qy))
-        pitch = math.asin(max(-1.0, min(1.0, 2 * (qw * qy - qz * qx))))
-        yaw = math.atan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz))
-        return x, y, z, roll, pitch, yaw
+        return x, y, z, *roll_pitch_yaw(qx, qy, qz, qw)
 
     def _settle(self) -> np.ndarray:
         """Let the keyframe's pose sink onto the floor and return its configuration at rest."""
@@ -137,6 +134,14 @@ class Simulation:
                 f'simulation: state diverged before t = {self.data.time:.3f} s, expected '
                 f'squared speed below {_SQUARED_SPEED_LIMIT:.0f}, got {self._qvel @ self._qvel}'
             )
+
+
+def roll_pitch_yaw(qx: float, qy: float, qz: float, qw: float) -> tuple[float, float, float]:
+    """Return the fixed-axis roll, pitch, yaw of REP-103 [rad] of a unit quaternion x y z w."""
+    roll = math.atan2(2 * (qw * qx + qy * qz), 1 - 2 * (qx * qx + qy * qy))
+    pitch = math.asin(max(-1.0, min(1.0, 2 * (qw * qy - qz * qx))))
+    yaw = math.atan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz))
+    return roll, pitch, yaw
 
 
 def whole_ratio(period_ns: int, step_ns: int) -> int:

@@ -3,6 +3,7 @@
 
 """The line-following task: start offsets, reward terms and the ends of an episode."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +13,8 @@ from hexapod_sim.simulation import Simulation, SimulationDivergedError
 
 _PERIOD_S = robot.CONTROL_PERIOD_NS * 1e-9
 TERM_NAMES = ('velocity', 'closeness', 'orientation', 'height', 'alive')
+DIVERGED = 'diverged'
+"""Cause of an episode's end that no pose shows: the physics was lost."""
 
 
 @dataclass(frozen=True)
@@ -145,6 +148,45 @@ def failure_cause(
     return ''
 
 
+def judge(
+    step: int, pose: Sequence[float], x_before: float, offset: float, config: TaskConfig
+) -> Outcome:
+    """Return what a control period earned, and whether the episode goes on.
+
+    Args:
+        step: Control periods since the episode began, this one included.
+        pose: x, y, z [m] and roll, pitch, yaw [rad] of base_link in odom, at the period's end.
+        x_before: x at the period's begin [m].
+        offset: Distance from the line at the period's end [m], positive to the left of it.
+        config: Weights, scales and limits.
+    """
+    x, _, height, roll, pitch, yaw = pose
+    velocity = (x - x_before) / _PERIOD_S
+    terms = {
+        'velocity': config.velocity_weight * velocity_term(velocity, config),
+        'closeness': config.closeness_weight * closeness_term(offset),
+        'orientation': -config.orientation_weight * orientation_penalty(roll, pitch, yaw, config),
+        'height': -config.height_weight * height_penalty(height, config),
+        'alive': config.alive_reward,
+    }
+    cause = failure_cause(roll, pitch, height, offset, config)
+    terminated = bool(cause)
+    truncated = not terminated and step >= config.time_limit_steps
+    return Outcome(
+        step,
+        sum(terms.values()),
+        terms,
+        terminated,
+        truncated,
+        'time_limit' if truncated else cause,
+    )
+
+
+def diverged(step: int) -> Outcome:
+    """Return the end of an episode whose physics was lost: nothing is earned."""
+    return Outcome(step, 0.0, dict.fromkeys(TERM_NAMES, 0.0), True, False, DIVERGED)
+
+
 class LineTask:
     """Walk along the line y = line_y of odom in +x direction, starting beside it.
 
@@ -215,31 +257,11 @@ class LineTask:
 
     def _judge(self) -> Outcome:
         """Return the outcome of the period that just ended."""
-        config = self.config
-        x, y, height, roll, pitch, yaw = self.simulation.pose()
-        offset = y - self._line_y
-        velocity = (x - self._x) / _PERIOD_S
-        self._x = x
-        terms = {
-            'velocity': config.velocity_weight * velocity_term(velocity, config),
-            'closeness': config.closeness_weight * closeness_term(offset),
-            'orientation': -config.orientation_weight
-            * orientation_penalty(roll, pitch, yaw, config),
-            'height': -config.height_weight * height_penalty(height, config),
-            'alive': config.alive_reward,
-        }
-        cause = failure_cause(roll, pitch, height, offset, config)
-        terminated = bool(cause)
-        truncated = not terminated and self._step >= config.time_limit_steps
-        self._over = terminated or truncated
-        return Outcome(
-            self._step,
-            sum(terms.values()),
-            terms,
-            terminated,
-            truncated,
-            'time_limit' if truncated else cause,
-        )
+        pose = self.simulation.pose()
+        outcome = judge(self._step, pose, self._x, pose[1] - self._line_y, self.config)
+        self._x = pose[0]
+        self._over = outcome.terminated or outcome.truncated
+        return outcome
 
     def _diverged(self, y: float) -> Outcome:
         """End the episode without reward, the robot put back so that its readings are finite."""
@@ -247,4 +269,4 @@ class LineTask:
         self.simulation.set_goal_line(self._line_y)
         self._step += 1
         self._over = True
-        return Outcome(self._step, 0.0, dict.fromkeys(TERM_NAMES, 0.0), True, False, 'diverged')
+        return diverged(self._step)
