@@ -13,6 +13,7 @@ setup(
     maintainer_email='team@hexapod.invalid',
     packages=find_packages(exclude=['test']),
     package_data={
+        'hexapod_doe.campaigns': ['templates/*'],
         'hexapod_doe.choosing': ['*.yaml'],
         'hexapod_doe.reporting': ['templates/*'],
     },

@@ -28,6 +28,7 @@ from rclpy.task import Future
 from hexapod_doe.campaigns.campaign import Campaign, Row
 from hexapod_doe.campaigns.dashboard import Dashboard
 from hexapod_doe.campaigns.local_workers import LocalWorkers
+from hexapod_doe.campaigns.page_writer import PageWriter
 
 _ACTION = 'hexapod_interfaces/action/TrainRun'
 _TICK_S = 0.2
@@ -99,9 +100,8 @@ class ManagerNode(Node):
         self._alone_since = time.monotonic()
         self._fault: Exception | None = None
         self.exit_status: int | None = None
-        self._dashboard = Dashboard(
-            len(self._campaign.rows), len(self._campaign.done), self._parameter('episodes')
-        )
+        self._dashboard = Dashboard(self._campaign, self._parameter('episodes'))
+        self._page = PageWriter(self._campaign.directory, self._dashboard.log)
         self._status_publisher = self.create_publisher(CampaignStatus, '~/status', LATCHED)
         self._local = LocalWorkers(
             0 if self._campaign.finished else self._worker_count(),
@@ -115,6 +115,7 @@ class ManagerNode(Node):
     def destroy_node(self) -> None:
         """Stop the local workers, then the node."""
         self._local.stop()
+        self._page.close()
         self._dashboard.close()
         super().destroy_node()
 
@@ -231,6 +232,7 @@ class ManagerNode(Node):
         return 1 if campaign.failed else 0
 
     def _publish_status(self) -> None:
+        self._page.refresh()
         campaign = self._campaign
         rows = {worker.name: worker.row for worker in self._workers.values()}
         message = CampaignStatus(

@@ -1,101 +1,116 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Progress of a campaign on the terminal: a bar with the time left, or lines where it is a log."""
+"""A running campaign on the terminal: a screen that is kept up to date, or lines in a log."""
 
 from __future__ import annotations
 
+import math
 import time
 
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn
+from rich.console import Console, RenderableType
+from rich.live import Live
+
+from hexapod_doe.campaigns.campaign import Campaign
+from hexapod_doe.campaigns.folder import read_row
+from hexapod_doe.campaigns.overview import overview, pace
+from hexapod_doe.campaigns.progress import Progress, Run, State
 
 _LOG_PERIOD_S = 10.0
+_FINISHED_SHOWN = 8
 
 
 class Dashboard:
-    """Counts episodes and shows how many are left."""
+    """Follows a campaign through what its manager tells, and shows it."""
 
-    def __init__(self, rows: int, done: int, episodes_per_row: int) -> None:
-        self._rows = rows
-        self._done_rows = done
-        self._per_row = episodes_per_row
-        self._started = time.monotonic()
-        self._fresh = 0
-        self._current: dict[str, int] = {}
-        self._last_log = self._started
-        self._console = Console()
-        self._progress = Progress(
-            TextColumn('{task.description}'),
-            BarColumn(),
-            MofNCompleteColumn(),
-            TextColumn('{task.fields[note]}'),
-            console=self._console,
-            disable=not self._console.is_terminal,
+    def __init__(
+        self, campaign: Campaign, episodes_per_row: int, console: Console | None = None
+    ) -> None:
+        """Begin with the rows that are done.
+
+        Args:
+            campaign: whose failures are shown, too.
+            episodes_per_row: of each training.
+            console: where to show it; the terminal unless given.
+        """
+        self._campaign = campaign
+        self._bags = {row.run_id: row.bag for row in campaign.rows}
+        self._current: dict[str, Run] = {}
+        self._began: dict[str, float] = {}
+        self._finished: list[Run] = []
+        self._last_log = time.monotonic()
+        runs = [Run(r.run_id, r.observations, planned=episodes_per_row) for r in campaign.rows]
+        for run in runs:
+            if run.run_id in campaign.done:
+                run.state = State.DONE
+                run.returns = [math.nan] * episodes_per_row  # counted, but not seen
+        self.progress = Progress(campaign.directory.name, {run.run_id: run for run in runs})
+        self._console = console or Console(highlight=False)
+        self._live = Live(
+            get_renderable=self._screen, console=self._console, refresh_per_second=1.0
         )
-        self._total = self._progress.add_task(
-            'episodes', total=rows * episodes_per_row, completed=done * episodes_per_row, note=''
-        )
-        self._bars: dict[str, TaskID] = {}
-        self._progress.start()
+        if self._console.is_terminal:
+            self._live.start()
 
     @property
     def episodes_per_second(self) -> float:
-        """Rate since the start."""
-        return self._fresh / max(time.monotonic() - self._started, 1e-9)
+        """Rate of all workers together."""
+        return self.progress.episodes_per_second
 
     @property
     def seconds_left(self) -> float:
         """Expected time to the end, NaN while nothing is known."""
-        left = (self._rows - self._done_rows) * self._per_row - sum(self._current.values())
-        return left / self.episodes_per_second if self._fresh else float('nan')
+        return self.progress.seconds_left
 
     def begin(self, worker: str, run_id: str, observations: str) -> None:
-        """Show a run on its worker's line."""
-        self._current[worker] = 0
-        if worker not in self._bars:
-            self._bars[worker] = self._progress.add_task(worker, total=self._per_row, note='')
-        note = f'{run_id}  sensors {observations or "none"}'
-        self._progress.reset(self._bars[worker], total=self._per_row, note=note)
+        """Show a run with its worker."""
+        run = self._current[worker] = self.progress.runs[run_id]
+        self._began[worker] = time.monotonic()
+        run.state, run.worker, run.observations = State.RUNNING, worker, observations
+        run.returns, run.seconds, run.earlier, run.reason = [], 0.0, 0, ''
 
     def episode(self, worker: str, run_id: str, episode: int, episode_return: float) -> None:
         """Count one finished episode."""
-        self._fresh += 1
-        self._current[worker] = episode + 1
-        self._progress.update(
-            self._bars[worker],
-            completed=episode + 1,
-            note=f'{run_id}  return {episode_return:.0f}',
-        )
-        self._refresh()
+        run = self._current.get(worker)
+        if run is None or run.run_id != run_id:
+            return  # the run was given up meanwhile
+        if not run.returns:  # what it had before it was begun again
+            run.earlier = episode
+            run.returns = [math.nan] * episode
+        run.returns[episode:] = [episode_return]
+        run.seconds = time.monotonic() - self._began[worker]
+        self._log_pace()
 
     def end(self, worker: str, text: str, done: bool) -> None:
         """Count a finished run, or take back one that failed."""
-        self._current[worker] = 0
-        self._done_rows += done
-        self._refresh()
-        self.log(f'{self._done_rows}/{self._rows} {text}')
+        run = self._current.pop(worker)
+        if done:
+            run = read_row(self._bags[run.run_id], run.run_id, run.observations)
+            self.progress.runs[run.run_id] = run
+            self._finished.append(run)
+        elif run.run_id in self._campaign.failed:
+            run.state = State.FAILED
+            run.reason = self._campaign.reasons[run.run_id][-1]
+        else:
+            run.state, run.returns, run.earlier = State.DUE, [], 0
+        rows = self.progress.runs
+        self.log(f'{len(self.progress.having(State.DONE))}/{len(rows)} {text}')
 
     def log(self, text: str) -> None:
-        """Print a line above the bars."""
-        self._console.print(text, highlight=False, markup=False, soft_wrap=True)
+        """Print a line above the screen."""
+        self._console.print(text, markup=False, soft_wrap=True)
 
     def close(self) -> None:
-        """Leave the terminal as it was."""
-        self._progress.stop()
+        """Leave the terminal as it was, with the last screen on it."""
+        self._live.stop()
 
-    def _refresh(self) -> None:
-        completed = self._done_rows * self._per_row + sum(self._current.values())
-        note = f'{self.episodes_per_second:.2f}/s  {_duration(self.seconds_left)} left'
-        self._progress.update(self._total, completed=completed, note=note)
-        if not self._console.is_terminal and time.monotonic() - self._last_log > _LOG_PERIOD_S:
-            self._last_log = time.monotonic()
-            self.log(f'{completed}/{self._rows * self._per_row} episodes, {note}')
+    def _screen(self) -> RenderableType:
+        shown = [*self.progress.having(State.RUNNING), *self._finished[-_FINISHED_SHOWN:]]
+        return overview(self.progress, [*shown, *self.progress.having(State.FAILED)])
 
-
-def _duration(seconds: float) -> str:
-    if seconds != seconds:
-        return '?'
-    minutes, rest = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f'{hours}:{minutes:02}:{rest:02}' if hours else f'{minutes}:{rest:02}'
+    def _log_pace(self) -> None:
+        if self._console.is_terminal or time.monotonic() - self._last_log < _LOG_PERIOD_S:
+            return
+        self._last_log = time.monotonic()
+        progress = self.progress
+        self.log(f'{progress.episodes}/{progress.planned} episodes, {pace(progress)}')

@@ -1,0 +1,135 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Reads a campaign's progress from its folder alone, also while it runs and after a crash."""
+
+from __future__ import annotations
+
+import fcntl
+from collections.abc import Callable, Mapping, Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from mcap.records import Channel, McapRecord, Message, Metadata, Schema
+from mcap_ros2.decoder import DecoderFactory
+
+from hexapod_doe.bags.bag_file import BagFile
+from hexapod_doe.bags.rosbag2 import partial_path
+from hexapod_doe.bags.run_bag import EPISODE_RESULT, RUN_RECORD
+from hexapod_doe.bags.run_record import is_complete
+from hexapod_doe.bags.salvage import whole_records
+from hexapod_doe.campaigns.campaign import PLAN_FILE, RUNS_FOLDER
+from hexapod_doe.campaigns.progress import Progress, Run, State
+from hexapod_doe.designs.plan_file import read_plan
+
+_BEGAN, _ENDED = 'recording_began', 'recording_ended'
+
+
+def read_progress(directory: Path, known: Mapping[str, Run] | None = None) -> Progress:
+    """Read what the plan and the bags of a campaign's folder say.
+
+    Args:
+        directory: with the plan and its bags.
+        known: runs that were read before; those that were done are not read again.
+
+    Raises:
+        FileNotFoundError: there is no plan.
+        hexapod_doe.designs.plan_file.PlanError: its file is not a plan.
+    """
+    rows = read_plan(directory / PLAN_FILE).rows.sort_values('RunOrder')
+    had = {run.run_id: run for run in (known or {}).values() if run.state is State.DONE}
+    runs = [
+        had.get(run_id) or read_row(directory / RUNS_FOLDER / run_id, run_id, observations)
+        for run_id, observations in zip(rows['run_id'], rows['observations'], strict=True)
+    ]
+    return Progress(directory.resolve().name, {run.run_id: run for run in runs})
+
+
+def read_row(bag: Path, run_id: str, observations: str) -> Run:
+    """Read how far a row is from its bag, whole, unfinished or not there."""
+    run = Run(run_id, observations)
+    partial = partial_path(bag)
+    if is_complete(bag):
+        run.state = State.DONE
+        _read_whole(run, BagFile(bag))
+    elif partial.is_dir():
+        file = partial / f'{bag.name}_0.mcap'
+        run.state = State.RUNNING if _held(file) else State.INTERRUPTED
+        _read_unfinished(run, file)
+    return run
+
+
+def _read_whole(run: Run, file: BagFile) -> None:
+    """Take from a closed bag what it says of its run."""
+    topic = file.topic_of_type(EPISODE_RESULT)
+    metadata = file.run_metadata()
+    ended = datetime.fromisoformat(metadata[_ENDED])
+    _fill(run, metadata, topic, ended, [result for _, result in file.decoded(topic)])
+
+
+def _read_unfinished(run: Run, file: Path) -> None:
+    """Take from a file that is being written, or was cut, what it says up to its last chunk."""
+    kept = _Kept()
+    try:
+        with file.open('rb') as stream:
+            for record in whole_records(stream):
+                kept.take(record)
+        last_write = datetime.fromtimestamp(file.stat().st_mtime, UTC)
+    except FileNotFoundError:  # not made yet, or closed meanwhile
+        return
+    if kept.metadata:
+        _fill(run, kept.metadata, kept.topic, last_write, kept.results)
+
+
+def _fill(
+    run: Run, metadata: Mapping[str, str], topic: str, ended: datetime, results: Sequence[Any]
+) -> None:
+    returns = {result.episode: result.episode_return for result in results}
+    run.returns = [returns[episode] for episode in sorted(returns)]
+    run.worker = topic.rsplit('/', 1)[0]
+    run.planned = int(metadata['episodes'])
+    run.earlier = min(int(metadata.get('resumed', '0')), len(returns))
+    if results:
+        run.reward = results[-1].average_return
+    began = datetime.fromisoformat(metadata[_BEGAN])
+    run.seconds = max(0.0, (ended - began).total_seconds())
+
+
+class _Kept:
+    """What the records of an unfinished file say of its run."""
+
+    def __init__(self) -> None:
+        self.metadata: Mapping[str, str] = {}
+        """As it was at the beginning, with the number of episodes that were to come."""
+        self.topic = ''
+        self.results: list[Any] = []
+        self._schema: Schema | None = None
+        self._decode: dict[int, Callable[[bytes], Any] | None] = {}
+
+    def take(self, record: McapRecord) -> None:
+        match record:
+            case Metadata(name=name) if name == RUN_RECORD and not self.metadata:
+                self.metadata = record.metadata
+            case Schema(name=name) if name == EPISODE_RESULT:
+                self._schema = record
+            case Channel() if self._schema is not None and record.schema_id == self._schema.id:
+                self.topic = record.topic
+                decoders = DecoderFactory()
+                self._decode[record.id] = decoders.decoder_for('cdr', self._schema)
+            case Message():
+                decode = self._decode.get(record.channel_id)
+                if decode is not None:
+                    self.results.append(decode(record.data))
+
+
+def _held(file: Path) -> bool:
+    """Whether a recorder has the file open; its lock goes with its process."""
+    try:
+        with file.open('rb') as stream:
+            if file.stat().st_size == 0:  # its lock comes before its first byte
+                return True
+            fcntl.flock(stream, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except (FileNotFoundError, BlockingIOError):  # not made yet; held
+        return True
+    return False

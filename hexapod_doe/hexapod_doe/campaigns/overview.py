@@ -1,0 +1,85 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Draws a campaign's progress for the terminal: figures, workers, learning curves."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from rich.console import Group, RenderableType
+from rich.progress_bar import ProgressBar
+from rich.table import Table
+from rich.text import Text
+
+from hexapod_doe.campaigns.curves import limits, sparkline, thin
+from hexapod_doe.campaigns.progress import Progress, Run, State, duration
+
+_POINTS = 24
+_STYLES = {
+    State.DONE: 'green',
+    State.RUNNING: 'cyan',
+    State.INTERRUPTED: 'yellow',
+    State.FAILED: 'red',
+    State.DUE: 'dim',
+}
+
+
+def overview(progress: Progress, runs: Iterable[Run]) -> RenderableType:
+    """Return everything: the figures, the workers, and a line for each of some runs."""
+    return Group(figures(progress), '', _workers(progress), '', _runs(progress, runs))
+
+
+def summary(progress: Progress) -> str:
+    """Return how many runs are in each state, and the pace."""
+    counts = {state: len(progress.having(state)) for state in State}
+    parts = [f'{len(progress.runs)} runs: {counts[State.DONE]} done']
+    parts += [f'{n} {state}' for state, n in counts.items() if n and state is not State.DONE]
+    return f'{", ".join(parts)}; {pace(progress)}'
+
+
+def pace(progress: Progress) -> str:
+    """Return the rate and the time that is left."""
+    rate = progress.episodes_per_second
+    return f'{rate:.2f} episodes/s, {duration(progress.seconds_left)} left'
+
+
+def figures(progress: Progress) -> RenderableType:
+    """Return a bar of the episodes above the summary."""
+    table = Table.grid(padding=(0, 1))
+    table.add_row(
+        Text(progress.name, style='bold'),
+        ProgressBar(total=progress.planned or 1, completed=progress.episodes, width=32),
+        f'{progress.episodes}/{progress.planned or "?"} episodes',
+    )
+    return Group(table, summary(progress))
+
+
+def _workers(progress: Progress) -> RenderableType:
+    table = Table('worker', 'runs done', 'episodes/s', 'runs now', box=None, pad_edge=False)
+    for worker in progress.workers:
+        run = worker.run
+        now = f'{run.run_id} {len(run.returns)}/{run.planned or "?"}' if run else ''
+        table.add_row(worker.name, str(worker.done), f'{worker.episodes_per_second:.2f}', now)
+    return table if table.row_count else Text('no worker yet')
+
+
+def _runs(progress: Progress, runs: Iterable[Run]) -> RenderableType:
+    curves = {name: thin(run.returns, _POINTS) for name, run in progress.runs.items()}
+    low, high = limits(curves.values())
+    curve_title = f'returns, {low:.0f} to {high:.0f}'
+    table = Table(
+        'run', 'sensors', 'state', 'episodes', curve_title, 'reward', box=None, pad_edge=False
+    )
+    for run in runs:
+        reward = '' if math.isnan(run.reward) else f'{run.reward:.1f}'
+        table.add_row(
+            run.run_id,
+            run.observations or 'none',
+            Text(run.state, style=_STYLES[run.state]),
+            f'{len(run.returns)}/{run.planned}' if run.planned else '',
+            sparkline(curves[run.run_id], low, high),
+            reward if not run.reason else f'{reward} {run.reason}'.strip(),
+        )
+    return table

@@ -1,0 +1,129 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""How far a campaign is: the figures that terminal, page and status message all show."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+
+class State(StrEnum):
+    """What has become of a row of the plan."""
+
+    DUE = 'due'
+    RUNNING = 'running'
+    INTERRUPTED = 'interrupted'
+    """It was begun, and nobody works at it now."""
+    DONE = 'done'
+    FAILED = 'failed'
+
+
+@dataclass
+class Run:
+    """One row of the plan."""
+
+    run_id: str
+    observations: str
+    state: State = State.DUE
+    worker: str = ''
+    """Namespace of who runs it, or ran it."""
+    planned: int = 0
+    """Episodes that it is to have; 0 while unknown."""
+    returns: list[float] = field(default_factory=list)
+    """Of each episode so far."""
+    reward: float = math.nan
+    """Mean of the last returns, over the window of the response."""
+    seconds: float = 0.0
+    """Wall time since its worker began it, or began it again, up to the last episode."""
+    earlier: int = 0
+    """Episodes that it already had then."""
+    reason: str = ''
+    """Why it failed."""
+
+    @property
+    def episodes_per_second(self) -> float:
+        """Rate of its worker; 0 while nothing is known."""
+        return (len(self.returns) - self.earlier) / self.seconds if self.seconds > 0.0 else 0.0
+
+
+@dataclass(frozen=True)
+class Worker:
+    """What one worker has done and does."""
+
+    name: str
+    run: Run | None
+    """Under way."""
+    done: int
+    """Runs."""
+    episodes_per_second: float
+
+
+@dataclass
+class Progress:
+    """A campaign's rows, in the order in which they are run."""
+
+    name: str
+    runs: dict[str, Run]
+
+    def having(self, *states: State) -> list[Run]:
+        """Return the runs in any of these states."""
+        return [run for run in self.runs.values() if run.state in states]
+
+    @property
+    def episodes(self) -> int:
+        """Episodes of runs that are not lost."""
+        return sum(len(r.returns) for r in self.runs.values() if r.state is not State.FAILED)
+
+    @property
+    def planned(self) -> int:
+        """Episodes of all rows; one that has not begun counts as the longest one that has."""
+        longest = max((run.planned for run in self.runs.values()), default=0)
+        return sum(run.planned or longest for run in self.runs.values())
+
+    @property
+    def workers(self) -> list[Worker]:
+        """Everyone who has, or had, a run."""
+        names = sorted({run.worker for run in self.runs.values() if run.worker})
+        return [
+            _worker(name, [r for r in self.runs.values() if r.worker == name]) for name in names
+        ]
+
+    @property
+    def episodes_per_second(self) -> float:
+        """Rate of all workers that have a run."""
+        return sum(worker.episodes_per_second for worker in self.workers if worker.run)
+
+    @property
+    def seconds_left(self) -> float:
+        """Expected time to the end at the present rate; NaN while nothing is known."""
+        longest = max((run.planned for run in self.runs.values()), default=0)
+        open_runs = self.having(State.DUE, State.RUNNING, State.INTERRUPTED)
+        left = sum((run.planned or longest) - len(run.returns) for run in open_runs)
+        if not open_runs:
+            return 0.0
+        rate = self.episodes_per_second
+        return left / rate if rate > 0.0 and longest else math.nan
+
+
+def _worker(name: str, runs: Iterable[Run]) -> Worker:
+    runs = list(runs)
+    current = next((run for run in runs if run.state is State.RUNNING), None)
+    rate = current.episodes_per_second if current else 0.0
+    if not rate:  # its present run has no episode yet
+        seconds = sum(run.seconds for run in runs)
+        fresh = sum(len(run.returns) - run.earlier for run in runs)
+        rate = fresh / seconds if seconds > 0.0 else 0.0
+    return Worker(name, current, sum(run.state is State.DONE for run in runs), rate)
+
+
+def duration(seconds: float) -> str:
+    """Return a time as hours, minutes and seconds; '?' for NaN."""
+    if math.isnan(seconds):
+        return '?'
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f'{hours}:{minutes:02}:{rest:02}' if hours else f'{minutes}:{rest:02}'
