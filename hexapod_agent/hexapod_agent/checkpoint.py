@@ -24,13 +24,14 @@ class CheckpointError(ValueError):
     """A file is no usable checkpoint; the message names it and what was expected."""
 
 
-def save(path: str | Path, trainer: Trainer, with_replay: bool) -> None:
+def save(path: str | Path, trainer: Trainer, to_resume: bool) -> None:
     """Write a checkpoint; a crash leaves the old file or the new one, never a part.
 
     Args:
         path: The file.
         trainer: The run, between two episodes.
-        with_replay: Whether the run can be resumed from it. Without, it is a few megabytes.
+        to_resume: Whether the run can go on from it. Without, it holds the actor alone, which
+            acts the same, in less than a megabyte.
     """
     path = Path(path)
     content = {
@@ -38,7 +39,7 @@ def save(path: str | Path, trainer: Trainer, with_replay: bool) -> None:
         'observations': trainer.spec.letters,
         'seed': trainer.seed,
         'config': trainer.config.to_mapping(),
-        'state': trainer.state_dict(with_replay),
+        'state': trainer.state_dict(to_resume),
     }
     path.parent.mkdir(parents=True, exist_ok=True)
     partial = path.with_name(f'{path.name}.partial')
@@ -50,13 +51,17 @@ def save(path: str | Path, trainer: Trainer, with_replay: bool) -> None:
     _sync_directory(path.parent)
 
 
-def load(path: str | Path) -> Trainer:
-    """Read a checkpoint into a trainer that goes on where the saved one was.
+def load(path: str | Path, to_resume: bool = False) -> Trainer:
+    """Read a checkpoint into a trainer that acts as the saved one, or goes on where it was.
 
     Raises:
-        CheckpointError: The file is missing, cut short, or something else.
+        CheckpointError: The file is missing, cut short, something else, or not `to_resume`.
     """
     content = _read(Path(path))
+    if to_resume and 'replay' not in content['state']:
+        raise CheckpointError(
+            f'checkpoint {str(path)!r} holds an agent alone, expected a run that can be resumed'
+        )
     config = AgentConfig.from_mapping(content['config'], str(path))
     trainer = Trainer(ObservationSpec(content['observations']), config, content['seed'])
     trainer.load_state_dict(content['state'])

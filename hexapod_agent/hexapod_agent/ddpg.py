@@ -180,12 +180,18 @@ class Ddpg:
             'critic_optimizer': self._critic_optimizer.state_dict(),
         }
 
+    def acting_state(self) -> dict[str, Any]:
+        """The actor alone."""
+        return {'actor': self.actor_parameters.flat}
+
     def load_state_dict(self, state: dict[str, Any]) -> None:
-        """Take over what `state_dict` gave, of networks with the same layers."""
+        """Take over what `state_dict` or `acting_state` gave, of networks with the same layers."""
         for name, part in self._stacks().items():
-            part.flat.copy_(state[name])
-        self._actor_optimizer.load_state_dict(state['actor_optimizer'])
-        self._critic_optimizer.load_state_dict(state['critic_optimizer'])
+            if name in state:
+                part.flat.copy_(state[name])
+        if 'actor_optimizer' in state:
+            self._actor_optimizer.load_state_dict(state['actor_optimizer'])
+            self._critic_optimizer.load_state_dict(state['critic_optimizer'])
         for network in (self._actor, self._critic, self._target_actor, self._target_critic):
             network.refresh()
 

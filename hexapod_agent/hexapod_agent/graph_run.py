@@ -109,7 +109,7 @@ class GraphRun:
         if goal.bag:
             if isinstance(self._agent, Trainer):
                 checkpoint = f'{goal.bag}.pt'
-                save(checkpoint, self._agent, with_replay=False)
+                save(checkpoint, self._agent, to_resume=False)
             # A name, not a path: bags are moved, and their checkpoints with them.
             found = {'checkpoint': Path(checkpoint).name}
             bag = await peers.finish_recording(goal.episodes, found)

@@ -21,7 +21,7 @@ from hexapod_agent.summary import EpisodeSummary
 from hexapod_agent.training import Trainer
 
 CHECKPOINT = 'checkpoint.pt'  # with the replay buffer: to resume
-AGENT = 'agent.pt'  # without: to evaluate and to keep
+AGENT = 'agent.pt'  # the actor alone: to evaluate and to keep
 LOG = 'episodes.csv'
 EVENTS = 'tensorboard'  # folder of the same curves, for `tensorboard --logdir`
 
@@ -64,10 +64,10 @@ def train(
             file.flush()
             events.add(summary)
             if trainer.episode % trainer.config.training.checkpoint_every == 0:
-                checkpoint.save(directory / CHECKPOINT, trainer, with_replay=True)
+                checkpoint.save(directory / CHECKPOINT, trainer, to_resume=True)
             report(summary)
-    checkpoint.save(directory / CHECKPOINT, trainer, with_replay=True)
-    checkpoint.save(directory / AGENT, trainer, with_replay=False)
+    checkpoint.save(directory / CHECKPOINT, trainer, to_resume=True)
+    checkpoint.save(directory / AGENT, trainer, to_resume=False)
 
 
 def _columns(summary: EpisodeSummary) -> dict[str, Any]:
@@ -133,7 +133,7 @@ def _trainer(options: argparse.Namespace) -> Trainer:
     """A new run, or the one that the directory holds."""
     path = options.out / CHECKPOINT
     if options.resume:
-        return checkpoint.load(path)
+        return checkpoint.load(path, to_resume=True)
     if path.exists():
         raise ConfigError(f'{str(path)!r} exists, expected --resume or another --out')
     config = AgentConfig.load(options.config)

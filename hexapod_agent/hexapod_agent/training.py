@@ -151,31 +151,32 @@ class Trainer:
             f'seed {self.seed})'
         )
 
-    def state_dict(self, with_replay: bool) -> dict[str, Any]:
-        """Everything that changes during a run, between two episodes.
+    def state_dict(self, to_resume: bool) -> dict[str, Any]:
+        """What changes during a run, between two episodes.
 
         Args:
-            with_replay: Whether the replay buffer is part of it; without, a run cannot go on.
+            to_resume: All of it, so that the run can go on; else what it takes to act.
         """
-        state = {
+        state: dict[str, Any] = {'episode': self.episode, 'returns': list(self.returns)}
+        if not to_resume:
+            return state | {'agent': self.agent.acting_state()}
+        return state | {
             'agent': self.agent.state_dict(),
             'replay_generator': self._replay_generator.bit_generator.state,
             'noise_generator': self._noise_generator.bit_generator.state,
             'noise_sigma': self._noise.sigma,
-            'episode': self.episode,
-            'returns': list(self.returns),
+            'replay': self._replay.state(),
         }
-        return state | ({'replay': self._replay.state()} if with_replay else {})
 
     def load_state_dict(self, state: dict[str, Any]) -> None:
         """Take over what `state_dict` gave, of a run with the same configuration."""
         self.agent.load_state_dict(state['agent'])
-        self._replay_generator.bit_generator.state = state['replay_generator']
-        self._noise_generator.bit_generator.state = state['noise_generator']
-        self._noise.sigma = state['noise_sigma']
         self.episode = state['episode']
         self.returns = list(state['returns'])
         if 'replay' in state:
+            self._replay_generator.bit_generator.state = state['replay_generator']
+            self._noise_generator.bit_generator.state = state['noise_generator']
+            self._noise.sigma = state['noise_sigma']
             self._replay.restore(state['replay'])
 
 

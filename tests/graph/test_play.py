@@ -35,7 +35,7 @@ def path(tmp_path) -> str:
     trainer = Trainer(ObservationSpec('BC'), AgentConfig.from_mapping(SMALL, 'small'), 5)
     # Weights large enough that the observation decides the action.
     trainer.agent.actor_parameters.flat.mul_(4.0)
-    checkpoint.save(tmp_path / 'agent.pt', trainer, with_replay=False)
+    checkpoint.save(tmp_path / 'agent.pt', trainer, to_resume=False)
     return str(tmp_path / 'agent.pt')
 
 

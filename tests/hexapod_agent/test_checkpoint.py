@@ -29,7 +29,7 @@ def flatten(value, prefix=''):
 
 
 def assert_same(first, second) -> None:
-    left, right = (dict(flatten(t.state_dict(with_replay=True))) for t in (first, second))
+    left, right = (dict(flatten(t.state_dict(to_resume=True))) for t in (first, second))
     assert left.keys() == right.keys()
     for path, value in left.items():
         if isinstance(value, torch.Tensor):
@@ -43,7 +43,7 @@ def test_resumed_run_equals_the_uninterrupted_one(make_trainer, tmp_path):
     advance(whole, 4)
     part = make_trainer()
     advance(part, 2)
-    checkpoint.save(tmp_path / 'a.pt', part, with_replay=True)
+    checkpoint.save(tmp_path / 'a.pt', part, to_resume=True)
     resumed = checkpoint.load(tmp_path / 'a.pt')
     advance(resumed, 2)
     assert resumed.returns == whole.returns
@@ -55,7 +55,7 @@ def test_kill_in_mid_episode_repeats_that_episode(make_trainer, tmp_path):
     advance(whole, 3)
     killed = make_trainer()
     advance(killed, 2)
-    checkpoint.save(tmp_path / 'a.pt', killed, with_replay=True)
+    checkpoint.save(tmp_path / 'a.pt', killed, to_resume=True)
     # Ten steps into the third episode the process dies; only the file remains.
     env = HexapodLine('BC', killed.config)
     seen, _ = env.reset(seed=killed.seed, options={'episode': 2})
@@ -72,19 +72,21 @@ def test_kill_in_mid_episode_repeats_that_episode(make_trainer, tmp_path):
 def test_small_checkpoint_acts_alike(make_trainer, tmp_path):
     trainer = make_trainer()
     advance(trainer, 1)
-    checkpoint.save(tmp_path / 'small.pt', trainer, with_replay=False)
-    checkpoint.save(tmp_path / 'large.pt', trainer, with_replay=True)
+    checkpoint.save(tmp_path / 'small.pt', trainer, to_resume=False)
+    checkpoint.save(tmp_path / 'large.pt', trainer, to_resume=True)
     assert (tmp_path / 'small.pt').stat().st_size < (tmp_path / 'large.pt').stat().st_size
     loaded = checkpoint.load(tmp_path / 'small.pt')
     seen = torch.rand(1, trainer.spec.size)
     assert torch.equal(loaded.agent.act(seen), trainer.agent.act(seen))
     assert (loaded.seed, loaded.spec.letters, loaded.config) == (5, 'BC', trainer.config)
+    with pytest.raises(checkpoint.CheckpointError, match='holds an agent alone, expected a run'):
+        checkpoint.load(tmp_path / 'small.pt', to_resume=True)
 
 
 def test_failed_write_leaves_the_old_file(make_trainer, tmp_path, monkeypatch):
     path = tmp_path / 'a.pt'
     trainer = make_trainer()
-    checkpoint.save(path, trainer, with_replay=False)
+    checkpoint.save(path, trainer, to_resume=False)
     before = path.read_bytes()
 
     def fail(content, file):
@@ -93,14 +95,14 @@ def test_failed_write_leaves_the_old_file(make_trainer, tmp_path, monkeypatch):
 
     monkeypatch.setattr(torch, 'save', fail)
     with pytest.raises(OSError, match='disk full'):
-        checkpoint.save(path, trainer, with_replay=False)
+        checkpoint.save(path, trainer, to_resume=False)
     assert path.read_bytes() == before
 
 
 @pytest.mark.parametrize('share', [0.0, 0.3, 0.99])
 def test_truncated_file_is_refused(make_trainer, tmp_path, share):
     path = tmp_path / 'a.pt'
-    checkpoint.save(path, make_trainer(), with_replay=False)
+    checkpoint.save(path, make_trainer(), to_resume=False)
     content = path.read_bytes()
     path.write_bytes(content[: int(share * len(content))])
     with pytest.raises(checkpoint.CheckpointError, match=r'a.pt.*expected a whole file'):

@@ -55,7 +55,7 @@ def test_baselines_and_trained_policy_repeat(make_trainer):
 
 
 def test_command_line_of_a_checkpoint(make_trainer, tmp_path, capsys):
-    checkpoint.save(tmp_path / 'a.pt', make_trainer(), with_replay=False)
+    checkpoint.save(tmp_path / 'a.pt', make_trainer(), to_resume=False)
     json_file = tmp_path / 'a.json'
     arguments = [str(tmp_path / 'a.pt'), '--starts', '2', '--json', str(json_file)]
     evaluate.main(arguments)

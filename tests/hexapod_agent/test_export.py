@@ -30,7 +30,7 @@ def trainer(make_trainer, request):
 
 @pytest.fixture
 def session(trainer, tmp_path):
-    checkpoint.save(tmp_path / 'agent.pt', trainer, with_replay=False)
+    checkpoint.save(tmp_path / 'agent.pt', trainer, to_resume=False)
     export.main([str(tmp_path / 'agent.pt'), str(tmp_path / 'agent.onnx')])
     return onnxruntime.InferenceSession(
         tmp_path / 'agent.onnx', providers=['CPUExecutionProvider']

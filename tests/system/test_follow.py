@@ -23,7 +23,7 @@ def ready(shell):
     """Write an untrained checkpoint, and a line that jumps after one second and after two."""
     config = AgentConfig.from_mapping({'actor': {'hidden': [8, 8]}}, 'test')
     trainer = Trainer(ObservationSpec('C'), config, 3)
-    checkpoint.save(shell.directory / 'agent.pt', trainer, with_replay=False)
+    checkpoint.save(shell.directory / 'agent.pt', trainer, to_resume=False)
     (shell.directory / 'jumps.yaml').write_text(
         'task: {time_limit_steps: 100, line_jump: 0.3, line_period: 1.0, start_offset: 0.0}\n'
     )
