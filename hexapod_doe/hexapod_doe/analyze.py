@@ -14,7 +14,8 @@ from hexapod_doe.analysis.options import Options
 from hexapod_doe.analysis.results import Analysis
 from hexapod_doe.errors import AnalysisError, BagError
 from hexapod_doe.reporting.report import write_report
-from hexapod_doe.tables.bag_table import RESPONSE_NAME, bag_responses, plan_rule, read_bags
+from hexapod_doe.tables.bag_response import DEFAULT_RESPONSE
+from hexapod_doe.tables.bag_table import bag_responses, plan_rule, read_bags
 from hexapod_doe.tables.csv_table import read_csv, read_responses
 from hexapod_doe.tables.table import RunTable
 
@@ -54,7 +55,7 @@ def summary(analysis: Analysis) -> str:
 
 def _tables(args: argparse.Namespace) -> list[RunTable]:
     if args.bags:
-        return read_bags(args.bags, args.factors)
+        return read_bags(args.bags, args.factors, args.response or DEFAULT_RESPONSE)
     return [table for path in args.table for table in read_csv(path, args.response, args.factors)]
 
 
@@ -80,12 +81,13 @@ def _options(args: argparse.Namespace) -> Options:
 
 def _confirmation_runs(args: argparse.Namespace) -> dict[str, list[float]]:
     """Return the responses of the confirmation runs by label."""
+    response = args.response or DEFAULT_RESPONSE
     runs: dict[str, list[float]] = {}
     for path in args.confirm:
         found = (
-            read_responses(path, args.response or RESPONSE_NAME, args.factors)
+            read_responses(path, response, args.factors)
             if path.suffix == '.csv'
-            else bag_responses(path)
+            else bag_responses(path, response)
         )
         for label, values in found.items():
             runs.setdefault(label, []).extend(values)

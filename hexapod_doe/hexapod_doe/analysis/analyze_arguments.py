@@ -6,6 +6,8 @@
 import argparse
 from pathlib import Path
 
+from hexapod_doe.tables.bag_response import DEFAULT_RESPONSE, RESPONSES
+
 DESCRIPTION = "Analyse a campaign's bags, or any table, and write a report and analysis.json."
 
 
@@ -18,7 +20,12 @@ def build_parser() -> argparse.ArgumentParser:
         'bags', nargs='*', type=Path, metavar='BAGS', help='a campaign directory, or bags of runs'
     )
     source.add_argument('--table', type=Path, nargs='+', metavar='FILE.csv', help='tables of runs')
-    source.add_argument('--response', metavar='NAME', help='response column of the tables')
+    source.add_argument(
+        '--response',
+        metavar='NAME',
+        help=f'column of the tables; of bags {", ".join(RESPONSES)} or a reward term, term_NAME '
+        f'(default of bags {DEFAULT_RESPONSE})',
+    )
     source.add_argument(
         '--factors',
         type=_letters,

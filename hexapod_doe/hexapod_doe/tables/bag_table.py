@@ -16,9 +16,9 @@ from hexapod_doe.designs.plan_file import read_plan
 from hexapod_doe.designs.plan_types import Confirmation, PlanSettings
 from hexapod_doe.errors import BagError
 from hexapod_doe.fitting.model import EMPTY_SET
+from hexapod_doe.tables.bag_response import DEFAULT_RESPONSE, response_of
 from hexapod_doe.tables.table import CURVE_COLUMNS, RESPONSE, RunTable, TableError, build_rows
 
-RESPONSE_NAME = 'final_average_reward'
 _DESIGN_ROW = ('case', 'replicate', 'RunOrder')
 
 
@@ -31,15 +31,24 @@ class _Group:
     bags: list[Path] = field(default_factory=list)
 
 
-def read_bags(paths: Sequence[Path], factors: Sequence[str] | None = None) -> list[RunTable]:
+def read_bags(
+    paths: Sequence[Path],
+    factors: Sequence[str] | None = None,
+    response: str = DEFAULT_RESPONSE,
+) -> list[RunTable]:
     """Read all complete bags below some directories; each campaign is one table.
 
-    A campaign that follows another one (a foldover, added cases) joins it. The response is the
-    mean of the last `window` episode returns, as the last episode's `average_return` holds it.
+    A campaign that follows another one (a foldover, added cases) joins it.
+
+    Args:
+        paths: Directories of campaigns or bags.
+        factors: Letters of the observations that may be on; by default all.
+        response: What a run is judged by, see `bag_response`.
 
     Raises:
         BagError: A directory is missing or a bag cannot be read.
-        TableError: There is no complete bag, or the runs cannot be analysed.
+        AnalysisError: There is no complete bag or no such response, or the runs cannot be
+            analysed.
     """
     bags = [bag for path in paths for bag in find_bags(path)]
     complete = [bag for bag in bags if is_complete(bag)]
@@ -48,7 +57,8 @@ def read_bags(paths: Sequence[Path], factors: Sequence[str] | None = None) -> li
     skipped = len(bags) - len(complete)
     caveats = (f'{skipped} bags of unfinished runs are left out.',) if skipped else ()
     names = tuple(factors or LETTERS)
-    return [_table(group, _names(paths), caveats, names) for group in _groups(complete)]
+    source = _names(paths)
+    return [_table(group, source, caveats, names, response) for group in _groups(complete)]
 
 
 def plan_rule(paths: Sequence[Path]) -> Confirmation:
@@ -60,13 +70,13 @@ def plan_rule(paths: Sequence[Path]) -> Confirmation:
     return Confirmation()
 
 
-def bag_responses(path: Path) -> dict[str, list[float]]:
+def bag_responses(path: Path, response: str = DEFAULT_RESPONSE) -> dict[str, list[float]]:
     """Return the responses of the complete runs below a directory, by their observations."""
     responses: dict[str, list[float]] = {}
     for bag in filter(is_complete, find_bags(path)):
         run = read_run(bag)
         label = ''.join(sorted(_observations(run))) or EMPTY_SET
-        responses.setdefault(label, []).append(_response(run))
+        responses.setdefault(label, []).append(response_of(run, response))
     return responses
 
 
@@ -102,15 +112,19 @@ def _groups(bags: Iterable[Path]) -> list[_Group]:
 
 
 def _table(
-    group: _Group, source: str, caveats: tuple[str, ...], factors: tuple[str, ...]
+    group: _Group,
+    source: str,
+    caveats: tuple[str, ...],
+    factors: tuple[str, ...],
+    response: str,
 ) -> RunTable:
     runs = [read_run(bag) for bag in group.bags]
-    raw = pd.DataFrame([_row(run, factors) for run in runs])
+    raw = pd.DataFrame([_row(run, factors, response) for run in runs])
     rows, found = build_rows(raw.dropna(axis=1), factors)
     return RunTable(
         title=group.title,
         source=source,
-        response=RESPONSE_NAME,
+        response=response,
         factors=factors,
         rows=rows,
         caveats=(*caveats, *found),
@@ -120,13 +134,13 @@ def _table(
     )
 
 
-def _row(run: RunRecord, factors: Sequence[str]) -> dict[str, object]:
+def _row(run: RunRecord, factors: Sequence[str], response: str) -> dict[str, object]:
     letters = _observations(run)
     return {
         'run_id': run.run_id,
         **{name: int(run.metadata[name]) for name in _DESIGN_ROW if run.metadata.get(name)},
         **{factor: 1 if factor in letters else -1 for factor in factors},
-        RESPONSE: _response(run),
+        RESPONSE: response_of(run, response),
     }
 
 
@@ -134,10 +148,6 @@ def _observations(run: RunRecord) -> str:
     if 'observations' not in run.metadata:
         raise BagError(f'run {run.run_id}: its metadata lacks the observations')
     return run.metadata['observations']
-
-
-def _response(run: RunRecord) -> float:
-    return float(run.episodes['average_return'].iloc[-1])
 
 
 def _curves(runs: Iterable[RunRecord], rows: pd.DataFrame) -> pd.DataFrame:

@@ -49,6 +49,13 @@ def test_learning_curves(campaign: Path) -> None:
     assert curve['return'].tolist() == [0.0, 10.0, 20.0, 30.0]
 
 
+def test_a_run_is_judged_by_what_the_user_names(campaign: Path) -> None:
+    (table,) = read_bags([campaign], response='mean_return')
+    assert table.response == 'mean_return'
+    # Episode e returns 10·e: a run of episodes 0 to c has the mean 5·c.
+    assert (table.values == 5.0 * table.rows['case']).all()
+
+
 def test_the_command_line_reads_a_campaign(
     campaign: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -91,3 +98,4 @@ def test_responses_of_confirmation_runs(tmp_path: Path, write_bag: WriteBag) -> 
     for number, letters in enumerate(('ABCDE', 'ABCDE', '')):
         write_bag(f'confirm/{number}', episodes=2 + number, samples=0, observations=letters)
     assert bag_responses(tmp_path / 'confirm') == {'ABCDE': [5.0, 10.0], '(none)': [15.0]}
+    assert bag_responses(tmp_path / 'confirm', 'mean_return')['(none)'] == [15.0]

@@ -1,0 +1,52 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+import pandas as pd
+import pytest
+from hexapod_doe.bags.run_record import RunRecord
+from hexapod_doe.errors import AnalysisError, BagError
+from hexapod_doe.tables.bag_response import RESPONSES, response_of
+
+RETURNS = [0.0, 12.0, 6.0, 3.0, 1.0, 8.0]
+
+
+def run(window: int | None) -> RunRecord:
+    episodes = pd.DataFrame(
+        {
+            'episode_return': RETURNS,
+            'average_return': [0.0, 6.0, 6.0, 5.25, 5.5, 4.5],
+            'term_velocity': [2.0, 4.0, 6.0, 8.0, 10.0, 12.0],
+        }
+    )
+    return RunRecord('r1', {} if window is None else {'window': str(window)}, episodes)
+
+
+@pytest.mark.parametrize(
+    ('name', 'window', 'expected'),
+    [
+        ('final_average_reward', 4, 4.5),  # as the agent kept it
+        ('best_average_reward', 2, 9.0),  # (12 + 6)/2
+        ('best_average_reward', 250, 5.0),  # fewer than a window: all, 30/6
+        ('final_iqm_reward', 4, 4.5),  # of 1 3 6 8 the middle two
+        (
+            'final_iqm_reward',
+            250,
+            13.5 / 3,
+        ),  # of 0 1 3 6 8 12 from 1.5 to 4.5: half 1, 3, 6, half 8
+        ('mean_return', 4, 5.0),
+        ('term_velocity', 3, 10.0),
+    ],
+)
+def test_responses(name: str, window: int, expected: float) -> None:
+    assert response_of(run(window), name) == pytest.approx(expected)
+
+
+def test_an_unknown_response_is_an_error_that_names_the_known_ones() -> None:
+    with pytest.raises(AnalysisError, match=f"'speed': run r1 has {', '.join(RESPONSES)}, term_v"):
+        response_of(run(4), 'speed')
+
+
+def test_a_window_that_the_bag_lacks_is_not_guessed() -> None:
+    assert response_of(run(None)) == 4.5
+    with pytest.raises(BagError, match='run r1: its metadata lacks the window'):
+        response_of(run(None), 'best_average_reward')
