@@ -95,7 +95,7 @@ class GraphRun:
         await peers.configure('sim', 'task', asdict(self._config.task))
         await peers.configure('cpg', 'cpg', asdict(self._config.cpg.hopf))
         if goal.bag:
-            await peers.configure('recorder', '', {})  # a greeting: its answers arrive from now on
+            await peers.greet_recorder()
             await peers.start_recording(
                 goal.run_id, goal.bag, self._recorded_topics(), self._metadata()
             )

@@ -20,7 +20,7 @@ from hexapod_node.calls import ServiceUnavailableError, call
 from hexapod_node.coroutines import sleep
 from hexapod_node.parameters import to_messages
 from hexapod_node.stamps import time_message, to_nanoseconds
-from rcl_interfaces.srv import SetParametersAtomically
+from rcl_interfaces.srv import ListParameters, SetParametersAtomically
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -49,16 +49,21 @@ class Peers:
         # order of their making, so one answer from a peer tells that its other answers arrive.
         self._configure = {
             peer: node.create_client(SetParametersAtomically, f'{peer}/set_parameters_atomically')
-            for peer in ('sim', 'cpg', 'recorder')
+            for peer in ('sim', 'cpg')
         }
+        self._greet = node.create_client(ListParameters, 'recorder/list_parameters')
 
     async def configure(self, peer: str, prefix: str, config: Mapping[str, Any]) -> None:
-        """Give a peer the configuration of the run, as its parameters; none just greets it."""
+        """Give a peer the configuration of the run, as its parameters."""
         request = SetParametersAtomically.Request(parameters=to_messages(prefix, config))
         client = self._configure[peer]
         response = await self._repeat_until_answered(client, request)
         if not response.result.successful:
             raise PeerError(f'{client.service_name}: {response.result.reason}')
+
+    async def greet_recorder(self) -> None:
+        """Wait until the recorder's answers arrive."""
+        await self._repeat_until_answered(self._greet, ListParameters.Request())
 
     async def begin_episode(self, seed: int, subscriptions: Mapping[str, int]) -> int:
         """Reset sim and pattern generator; return the stamp of the first period, ns."""
