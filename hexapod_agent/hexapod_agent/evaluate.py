@@ -12,12 +12,14 @@ from pathlib import Path
 
 import numpy as np
 from hexapod_cpg.mapping import ACTION_SIZE
+from numpy.typing import NDArray
 from rich.console import Console
-from rich.progress import track
+from rich.progress import Progress, track
 from rich.table import Table
 
 from hexapod_agent import checkpoint
 from hexapod_agent.config import AgentConfig, ConfigError
+from hexapod_agent.constant_action import GENERATIONS, best_constant_action
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.evaluation import Episode, Evaluation, GraphError, run_episode, summarize
 from hexapod_agent.policies import Policy, constant_policy, random_policy, trained_policy
@@ -56,7 +58,11 @@ def main(args: Sequence[str] | None = None) -> None:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog='evaluate', description=__doc__)
     parser.add_argument('checkpoint', nargs='?', help='file written by train')
-    parser.add_argument('--policy', choices=('zero', 'random'), help='a baseline instead')
+    parser.add_argument(
+        '--policy',
+        choices=('zero', 'random', 'constant'),
+        help='a baseline instead; constant: the best constant action, searched for a minute or two',
+    )
     parser.add_argument('--config', help='configuration of the baseline; default article.yaml')
     parser.add_argument('--starts', type=int, default=50, help='episodes (default 50)')
     parser.add_argument('--seed', type=int, default=1, help='seed of the starts (default 1)')
@@ -83,8 +89,17 @@ def _subject(options: argparse.Namespace) -> tuple[str, Iterator[Episode]]:
     env = HexapodLine('', AgentConfig.load(options.config))
     if options.policy == 'random':
         return 'random actions', _in_environment(env, random_policy(options.seed), options)
+    if options.policy == 'constant':
+        best = constant_policy(_searched(env))
+        return 'best constant action', _in_environment(env, best, options)
     zero = constant_policy(np.zeros(ACTION_SIZE, np.float32))
     return 'zero action', _in_environment(env, zero, options)
+
+
+def _searched(env: HexapodLine) -> NDArray[np.float32]:
+    with Progress(transient=True) as progress:
+        task = progress.add_task('search', total=GENERATIONS)
+        return best_constant_action(env, lambda generation: progress.advance(task))
 
 
 def _in_environment(
