@@ -61,7 +61,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         '--policy',
         choices=('zero', 'random', 'constant'),
-        help='a baseline instead; constant: the best constant action, searched for a minute or two',
+        help='a baseline instead; constant: the best constant action, searched for minutes',
     )
     parser.add_argument('--config', help='configuration of the baseline; default article.yaml')
     parser.add_argument('--starts', type=int, default=50, help='episodes (default 50)')

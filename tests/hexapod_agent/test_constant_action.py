@@ -5,12 +5,13 @@
 
 import numpy as np
 import pytest
-from hexapod_agent import constant_action
 from hexapod_agent.config import AgentConfig
 from hexapod_agent.constant_action import best_constant_action
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.evaluation import run_episode
 from hexapod_agent.policies import constant_policy
+
+from hexapod_agent import constant_action
 
 
 @pytest.fixture
