@@ -64,8 +64,8 @@ def _read_whole(run: Run, file: BagFile) -> None:
     """Take from a closed bag what it says of its run."""
     topic = file.topic_of_type(EPISODE_RESULT)
     metadata = file.run_metadata()
-    ended = datetime.fromisoformat(metadata[_ENDED])
-    _fill(run, metadata, topic, ended, [result for _, result in file.decoded(topic)])
+    _fill(run, metadata, topic, [result for _, result in file.decoded(topic)])
+    run.seconds = _seconds(metadata, _time(metadata, _ENDED))
 
 
 def _read_unfinished(run: Run, file: Path) -> None:
@@ -79,12 +79,20 @@ def _read_unfinished(run: Run, file: Path) -> None:
     except FileNotFoundError:  # not made yet, or closed meanwhile
         return
     if kept.metadata:
-        _fill(run, kept.metadata, kept.topic, last_write, kept.results)
+        _fill(run, kept.metadata, kept.topic, kept.results)
+        run.seconds = _seconds(kept.metadata, last_write)
 
 
-def _fill(
-    run: Run, metadata: Mapping[str, str], topic: str, ended: datetime, results: Sequence[Any]
-) -> None:
+def _seconds(metadata: Mapping[str, str], ended: datetime | None) -> float:
+    began = _time(metadata, _BEGAN)
+    return max(0.0, (ended - began).total_seconds()) if began and ended else 0.0
+
+
+def _time(metadata: Mapping[str, str], key: str) -> datetime | None:
+    return datetime.fromisoformat(metadata[key]) if key in metadata else None
+
+
+def _fill(run: Run, metadata: Mapping[str, str], topic: str, results: Sequence[Any]) -> None:
     returns = {result.episode: result.episode_return for result in results}
     run.returns = [returns[episode] for episode in sorted(returns)]
     run.worker = topic.rsplit('/', 1)[0]
@@ -92,8 +100,6 @@ def _fill(
     run.earlier = min(int(metadata.get('resumed', '0')), len(returns))
     if results:
         run.reward = results[-1].average_return
-    began = datetime.fromisoformat(metadata[_BEGAN])
-    run.seconds = max(0.0, (ended - began).total_seconds())
 
 
 class _Kept:

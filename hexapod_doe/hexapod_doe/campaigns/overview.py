@@ -28,7 +28,8 @@ _STYLES = {
 
 def overview(progress: Progress, runs: Iterable[Run]) -> RenderableType:
     """Return everything: the figures, the workers, and a line for each of some runs."""
-    return Group(figures(progress), '', _workers(progress), '', _runs(progress, runs))
+    tables = (figures(progress), '', _workers(progress), '', _runs(progress, runs))
+    return Group(*tables, _failures(progress))
 
 
 def summary(progress: Progress) -> str:
@@ -80,6 +81,11 @@ def _runs(progress: Progress, runs: Iterable[Run]) -> RenderableType:
             Text(run.state, style=_STYLES[run.state]),
             f'{len(run.returns)}/{run.planned}' if run.planned else '',
             sparkline(curves[run.run_id], low, high),
-            reward if not run.reason else f'{reward} {run.reason}'.strip(),
+            reward,
         )
     return table
+
+
+def _failures(progress: Progress) -> RenderableType:
+    lines = [Text(f'{r.run_id} failed: {r.reason}') for r in progress.having(State.FAILED)]
+    return Group('', *lines) if lines else Group()

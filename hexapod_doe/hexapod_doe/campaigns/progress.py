@@ -14,12 +14,12 @@ from enum import StrEnum
 class State(StrEnum):
     """What has become of a row of the plan."""
 
-    DUE = 'due'
+    DONE = 'done'
+    FAILED = 'failed'
     RUNNING = 'running'
     INTERRUPTED = 'interrupted'
     """It was begun, and nobody works at it now."""
-    DONE = 'done'
-    FAILED = 'failed'
+    DUE = 'due'
 
 
 @dataclass

@@ -1,0 +1,55 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+import math
+
+import pytest
+from hexapod_doe.campaigns.progress import Progress, Run, State, duration
+
+
+def made(*runs: Run) -> Progress:
+    return Progress('c', {run.run_id: run for run in runs})
+
+
+DONE = Run('a', '', State.DONE, '/w1', 10, [0.0] * 10, seconds=20.0)
+RUNNING = Run('b', '', State.RUNNING, '/w2', 10, [0.0] * 4, seconds=2.0)
+DUE = Run('c', '')
+
+
+def test_the_time_left_is_what_is_open_at_the_present_rate():
+    progress = made(DONE, RUNNING, DUE)
+    assert progress.episodes == 14
+    assert progress.planned == 30
+    assert progress.episodes_per_second == pytest.approx(2.0)
+    # 6 of the running row and 10 of the due one, at 2 a second.
+    assert progress.seconds_left == pytest.approx(8.0)
+
+
+def test_nothing_is_known_of_a_time_left_that_nobody_works_off():
+    assert math.isnan(made(DONE, DUE).seconds_left)
+    assert math.isnan(made(DUE).seconds_left)
+
+
+def test_nothing_is_left_of_what_is_done_or_failed():
+    failed = Run('d', '', State.FAILED, planned=10)
+    assert made(DONE, failed).seconds_left == 0.0
+
+
+def test_the_rate_of_a_resumed_run_leaves_out_what_it_had_before():
+    run = Run('b', '', State.RUNNING, '/w', 10, [0.0] * 6, seconds=2.0, earlier=4)
+    assert run.episodes_per_second == pytest.approx(1.0)
+
+
+def test_a_worker_keeps_its_rate_until_its_next_run_has_an_episode():
+    fresh = Run('b', '', State.RUNNING, '/w1', 10)
+    (worker,) = made(DONE, fresh).workers
+    assert worker.run is fresh
+    assert worker.done == 1
+    assert worker.episodes_per_second == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize(
+    ('seconds', 'text'), [(0.4, '0:00'), (61.0, '1:01'), (3725.0, '1:02:05'), (math.nan, '?')]
+)
+def test_durations(seconds, text):
+    assert duration(seconds) == text
