@@ -9,7 +9,12 @@ from pathlib import Path
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from hexapod_interfaces.msg import EpisodeResult
-from hexapod_interfaces.srv import FinishRecording, RecordEpisode, StartRecording
+from hexapod_interfaces.srv import (
+    FinishRecording,
+    RecordEpisode,
+    SecureRecording,
+    StartRecording,
+)
 from hexapod_node.conditions import until_true
 from hexapod_node.coroutine_service import create_coroutine_service
 from hexapod_node.diagnostics import Diagnostics, Health
@@ -17,15 +22,14 @@ from hexapod_node.parameters import Parameter, declare
 from hexapod_node.qos import RECORD
 from hexapod_node.raw_topics import RawSubscriptions, subscribe_raw
 from hexapod_node.spin import run
-from hexapod_node.stamps import to_nanoseconds
+from hexapod_node.stamps import time_message, to_nanoseconds
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from rclpy.node import Node
-from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
-from rclpy.topic_endpoint_info import TopicEndpointInfo
 
+from hexapod_doe.bags.carry_over import open_recording
+from hexapod_doe.bags.messages import recorded_topic
 from hexapod_doe.bags.recording import Recording
-from hexapod_doe.bags.rosbag2 import OfferedQos, Topic
 from hexapod_doe.bags.run_bag import EPISODE_RESULT
 from hexapod_doe.bags.salvage import set_aside
 from hexapod_doe.errors import BagError
@@ -43,11 +47,7 @@ PARAMETERS = (
         CONTROL_PERIOD_NS * 1e-9,
         'Grid of the stamps, on which missing samples are found; 0 where there is none.',
     ),
-    _seconds(
-        'match_timeout',
-        5.0,
-        'How long to wait until each topic of a sampled episode has a publisher.',
-    ),
+    _seconds('match_timeout', 5.0, 'How long to wait for the publishers of a sampled episode.'),
     _seconds(
         'drain_timeout',
         6.0,  # two heartbeats of DDS, at which it sends again what was lost
@@ -56,7 +56,7 @@ PARAMETERS = (
     _seconds(
         'result_timeout',
         6.0,
-        'How long to wait at the end of a run for its last episode results.',
+        'How long to wait for the last episode results, at a checkpoint and at the end of a run.',
     ),
 )
 
@@ -78,6 +78,7 @@ class RecorderNode(Node):
         """Why nothing more can be recorded of the run."""
         self.create_service(StartRecording, '~/start', self._on_start)
         create_coroutine_service(self, RecordEpisode, '~/episode', self._on_episode)
+        create_coroutine_service(self, SecureRecording, '~/secure', self._on_secure)
         create_coroutine_service(self, FinishRecording, '~/finish', self._on_finish)
         # Always there, so that it is matched when a run begins.
         subscribe_raw(self, RESULT_TOPIC, EPISODE_RESULT, self._on_result, RECORD)
@@ -99,17 +100,23 @@ class RecorderNode(Node):
         try:
             if not request.run_id or not request.bag:
                 raise BagError(f"run '{request.run_id}', bag '{bag}': expected both to be named")
-            cut = set_aside(bag)
+            cut = set_aside(bag, request.takeover)
             if cut is not None:
                 self.get_logger().warning(f'an earlier recording was cut; it is now {cut}')
-            period_ns = round(self._seconds('control_period') * 1e9)
-            metadata = {entry.key: entry.value for entry in request.metadata}
-            self._recording = Recording(request.run_id, bag, metadata, period_ns)
+            self._recording, response.kept, last_ns = open_recording(
+                request.run_id,
+                bag,
+                {entry.key: entry.value for entry in request.metadata},
+                round(self._seconds('control_period') * 1e9),
+                request.keep,
+                self.resolve_topic_name(RESULT_TOPIC),
+            )
         except BagError as error:
             response.message = str(error)
             return response
         self._topics = [self.resolve_topic_name(topic) for topic in request.topics]
         self._failure = ''
+        response.last = time_message(last_ns)
         response.success = True
         return response
 
@@ -131,17 +138,27 @@ class RecorderNode(Node):
         response.topics = self._samples.topics
         return response
 
+    async def _on_secure(
+        self, request: SecureRecording.Request, response: SecureRecording.Response
+    ) -> SecureRecording.Response:
+        """Answer once the disk has the first results."""
+        try:
+            recording = await self._with_results(request.episodes)
+            lacking = recording.lacking(request.episodes)
+            if lacking:
+                raise BagError(f'run {recording.run_id}: no result of episode {lacking[0]} came')
+            recording.secure()
+            response.success = True
+        except BagError as error:
+            response.message = str(error)
+        return response
+
     async def _on_finish(
         self, request: FinishRecording.Request, response: FinishRecording.Response
     ) -> FinishRecording.Response:
         """Close the bag, or say why it cannot be closed."""
         try:
-            recording = self._usable_recording()
-            await until_true(
-                self,
-                lambda: not recording.lacking(request.episodes),
-                self._seconds('result_timeout'),
-            )
+            recording = await self._with_results(request.episodes)
             self._samples.close()
             self._recording = None
             metadata = {entry.key: entry.value for entry in request.metadata}
@@ -151,6 +168,14 @@ class RecorderNode(Node):
         except BagError as error:
             response.message = str(error)
         return response
+
+    async def _with_results(self, episodes: int) -> Recording:
+        """Return the recording once it has so many results, or when none came for too long."""
+        recording = self._usable_recording()
+        await until_true(
+            self, lambda: not recording.lacking(episodes), self._seconds('result_timeout')
+        )
+        return self._usable_recording()
 
     # Sampled episodes
 
@@ -163,7 +188,9 @@ class RecorderNode(Node):
                 f'{timeout_s:g} s, expected one of each recorded topic'
             )
         publishers = {name: self.get_publishers_info_by_topic(name) for name in self._topics}
-        recording.begin_sample(episode, [_topic(name, publishers[name]) for name in publishers])
+        recording.begin_sample(
+            episode, [recorded_topic(name, publishers[name]) for name in publishers]
+        )
         self._samples.open(publishers)
         if not await until_true(self, lambda: not self._samples.unmatched(), timeout_s):
             unheard = ', '.join(self._samples.unmatched())
@@ -200,7 +227,7 @@ class RecorderNode(Node):
             )
             return
         name = self.resolve_topic_name(RESULT_TOPIC)
-        topic = _topic(name, self.get_publishers_info_by_topic(name))
+        topic = recorded_topic(name, self.get_publishers_info_by_topic(name))
         try:
             recording.add_result(topic, data, result.episode, result.steps)
         except BagError as error:
@@ -262,33 +289,6 @@ class RecorderNode(Node):
                 'incomplete': len(recording.incomplete),
             },
         )
-
-
-def _topic(name: str, publishers: list[TopicEndpointInfo]) -> Topic:
-    """Describe a topic as its publishers offer it.
-
-    Raises:
-        BagError: they publish different types.
-    """
-    types = sorted({publisher.topic_type for publisher in publishers})
-    if len(types) != 1:
-        raise BagError(f'topic {name}: types {", ".join(types) or "unknown"}, expected one')
-    return Topic(
-        name, types[0], tuple(_offered(publisher.qos_profile) for publisher in publishers)
-    )
-
-
-def _offered(qos: QoSProfile) -> OfferedQos:
-    return OfferedQos(
-        reliability=qos.reliability.name.lower(),
-        durability=qos.durability.name.lower(),
-        history=qos.history.name.lower(),
-        depth=qos.depth,
-        liveliness=qos.liveliness.name.lower(),
-        deadline_ns=qos.deadline.nanoseconds,
-        lifespan_ns=qos.lifespan.nanoseconds,
-        liveliness_lease_ns=qos.liveliness_lease_duration.nanoseconds,
-    )
 
 
 def main() -> None:

@@ -4,7 +4,7 @@
 """Writes rosbag2 directories of which none is ever taken for whole before it is.
 
 All writing happens in `<bag>.partial`, which holds an advisory lock while its writer lives. Only
-`close` gives the directory its name, after everything has reached the disk.
+`close` gives the directory its name, after everything has reached the disk and was read back.
 """
 
 from __future__ import annotations
@@ -22,9 +22,12 @@ from mcap.well_known import MessageEncoding, Profile, SchemaEncoding
 from mcap.writer import CompressionType, Writer
 
 from hexapod_doe.bags import rosbag2
+from hexapod_doe.bags.bag_file import BagFile
+from hexapod_doe.bags.digest import Digest
 from hexapod_doe.bags.rosbag2 import METADATA_FILE, ROOT_KEY, Topic, partial_path
-from hexapod_doe.bags.run_bag import RUN_RECORD
+from hexapod_doe.bags.run_bag import DIGEST, RUN_RECORD
 from hexapod_doe.bags.schema import definition, type_hash
+from hexapod_doe.bags.verify import check_messages
 from hexapod_doe.errors import BagError
 
 CHUNK_BYTES = 1 << 20
@@ -57,6 +60,7 @@ class BagWriter:
         self._topics: dict[str, Topic] = {}
         self._schemas: dict[str, int] = {}
         self._channels: dict[str, int] = {}
+        self._digest = Digest()
         self._broken = False
         if bag.exists():
             raise BagError(f'bag {bag}: exists already, expected a new directory')
@@ -117,18 +121,45 @@ class BagWriter:
         except OSError as error:
             raise self._failure(error) from error
         self.extent.add(topic, log_ns)
+        self._digest.add(topic, data, log_ns)
 
     def flush(self) -> None:
-        """End the chunk and hand it to the system: what came so far survives this process."""
+        """End the chunk and hand it to the system: what came so far survives this process.
+
+        Raises:
+            BagError: the disk refuses, or another writer has taken the bag over.
+        """
         self._check_usable()
+        self._check_owned()
         try:
             self._writer.flush()
+            self._file.flush()
+        except OSError as error:
+            raise self._failure(error) from error
+
+    def secure(self) -> None:
+        """Wait until the disk has what came so far: it survives the machine.
+
+        Raises:
+            BagError: the disk refuses, or another writer has taken the bag over.
+        """
+        self.flush()
+        try:
+            os.fsync(self._file.fileno())
+            _sync_directory(self.partial)
+            _sync_directory(self.partial.parent)
         except OSError as error:
             raise self._failure(error) from error
 
     def close(self) -> Path:
-        """Finish the bag, wait until the disk has it, give it its name and return that."""
+        """Finish the bag, read it back from the disk, give it its name and return that.
+
+        Raises:
+            BagError: the disk refuses or does not hold what was written, or another writer has
+                taken the bag over. The bag keeps its unfinished name.
+        """
         self._finish()
+        check_messages(BagFile(self.partial), self.metadata[DIGEST])
         os.rename(self.partial, self.bag)
         _sync_directory(self.bag.parent)
         return self.bag
@@ -171,6 +202,8 @@ class BagWriter:
 
     def _finish(self) -> None:
         self._check_usable()
+        self._check_owned()
+        self.metadata[DIGEST] = self._digest.hexdigest(self._topics)
         information = rosbag2.information(
             Path(self._file.name).name, self._topics.values(), self.extent
         )
@@ -193,6 +226,22 @@ class BagWriter:
         if self._broken or self._file.closed:
             state = 'an earlier write failed' if self._broken else 'it is closed'
             raise BagError(f'bag {self.bag}: cannot write, {state}')
+
+    def _check_owned(self) -> None:
+        """Make sure that `<bag>.partial` still is the directory of this writer's file.
+
+        It no longer is once a later recording of the run has set it aside.
+        """
+        try:
+            there = os.stat(self._file.name)
+        except FileNotFoundError:
+            there = None
+        if there is None or not os.path.samestat(there, os.fstat(self._file.fileno())):
+            self._broken = True
+            self._file.raw.close()
+            raise BagError(
+                f'bag {self.bag}: another recorder has taken the run over, this one ends'
+            )
 
     def _refusal(self, error: OSError) -> BagError:
         return BagError(f'bag {self.bag}: cannot write: {error.strerror}: {error.filename}')

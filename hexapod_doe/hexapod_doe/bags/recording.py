@@ -148,6 +148,14 @@ class Recording:
         self._writer.flush()
         return faults
 
+    def secure(self) -> None:
+        """Return once the disk has everything so far.
+
+        Raises:
+            BagError: the disk refuses, or a later recording of the run has taken over.
+        """
+        self._writer.secure()
+
     def lacking(self, episodes: int) -> list[int]:
         """Return which of so many episodes have no result yet."""
         return sorted(set(range(episodes)) - self.results)

@@ -7,6 +7,10 @@ RUN_RECORD = 'hexapod_run'
 """Name of the MCAP metadata records that tell which run it is; what is written last holds."""
 EPISODE_RESULT = 'hexapod_interfaces/msg/EpisodeResult'
 """Type of the one topic that every run has."""
+LINE_OFFSET = 'hexapod_interfaces/msg/LineOffset'
+"""Type of the topic that tells how far the robot is from its line."""
+STEP_OUTCOME = 'hexapod_interfaces/msg/StepOutcome'
+"""Type of the topic that tells where an episode with all its topics begins."""
 
 # Values of the metadata key `status`.
 RECORDING = 'recording'
@@ -15,3 +19,8 @@ COMPLETE = 'complete'
 """The bag holds all that it was meant to."""
 SALVAGED = 'salvaged'
 """The bag is what was left of a recording that was cut."""
+
+DIGEST = 'digest'
+"""Metadata key of the fingerprint of all messages, see `digest`."""
+RESUMED = 'resumed'
+"""Metadata key of the number of episodes that came from an earlier recording that was cut."""

@@ -46,11 +46,15 @@ def salvage(bag: str | Path) -> Path:
     return copy.writer.close()
 
 
-def set_aside(bag: str | Path) -> Path | None:
+def set_aside(bag: str | Path, takeover: bool = False) -> Path | None:
     """Rename what is left of an earlier recording to `<bag>.cut_<n>`, so the run can be repeated.
 
     That is an unfinished `<bag>.partial`, or a `<bag>` that is damaged or incomplete. A complete
     bag stays, and so does a directory that never was a bag of that name.
+
+    Args:
+        bag: directory that the finished bag would have had.
+        takeover: also while it is being written; its writer then finds out and ends.
 
     Returns:
         The new name, or None where there is nothing to set aside.
@@ -62,8 +66,9 @@ def set_aside(bag: str | Path) -> Path | None:
     names = (bag.with_name(f'{bag.name}.cut_{n}') for n in itertools.count(1))
     aside = None
     if partial_path(bag).is_dir():
-        with _exclusive(bag):
-            aside = partial_path(bag).rename(next(name for name in names if not name.exists()))
+        if not takeover:
+            _check_unlocked(bag)
+        aside = partial_path(bag).rename(next(name for name in names if not name.exists()))
     if _file(bag, bag).is_file() and not is_complete(bag):
         aside = bag.rename(next(name for name in names if not name.exists()))
     return aside
@@ -106,11 +111,12 @@ class _Copy:
             self.writer = BagWriter(self.target, self.metadata)
         channel = self._channels[message.channel_id]
         if channel.topic not in self.writer.extent.counts:
-            self.writer.add_topic(_topic(channel, self._schemas[channel.schema_id]))
+            self.writer.add_topic(topic_of(channel, self._schemas[channel.schema_id]))
         self.writer.write(channel.topic, message.data, message.log_time, message.publish_time)
 
 
-def _topic(channel: Channel, schema: Schema) -> Topic:
+def topic_of(channel: Channel, schema: Schema) -> Topic:
+    """Return the topic that an MCAP channel stands for."""
     return Topic(
         channel.topic,
         schema.name,
@@ -122,6 +128,12 @@ def _topic(channel: Channel, schema: Schema) -> Topic:
 
 def _file(directory: Path, bag: Path) -> Path:
     return directory / f'{bag.name}_0.mcap'
+
+
+def _check_unlocked(bag: Path) -> None:
+    if _file(partial_path(bag), bag).is_file():
+        with _exclusive(bag):
+            pass
 
 
 @contextmanager

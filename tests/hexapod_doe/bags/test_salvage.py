@@ -8,6 +8,7 @@ import sys
 
 import pytest
 from hexapod_doe.bags.bag_writer import BagWriter
+from hexapod_doe.bags.digest import digest
 from hexapod_doe.bags.rosbag2 import partial_path
 from hexapod_doe.bags.run_record import find_bags, is_complete, read_run
 from hexapod_doe.bags.salvage import salvage, set_aside
@@ -52,7 +53,8 @@ def test_killed_recording_is_salvaged_to_the_last_flushed_chunk(tmp_path, sample
     assert times == list(range(len(times)))
     assert len(times) in (len(announced), len(announced) + 1)
     run = read_run(salvaged)
-    assert run.metadata == {'run_id': 'r1', 'seed': '7', 'status': 'salvaged'}
+    expected = {'run_id': 'r1', 'seed': '7', 'status': 'salvaged', 'digest': digest(salvaged)}
+    assert run.metadata == expected
     assert not is_complete(salvaged)
     assert find_bags(tmp_path) == []
 
@@ -106,6 +108,21 @@ def test_set_aside_keeps_every_cut(tmp_path, samples):
         writer.abandon()
         assert set_aside(bag) == tmp_path / f'r1.cut_{n}'
     assert not partial_path(bag).exists()
+
+
+def test_takeover_sets_aside_what_is_still_being_written(tmp_path, samples):
+    bag = tmp_path / 'r1'
+    slow = BagWriter(bag, {})
+    samples.fill(slow, 1)
+    assert set_aside(bag, takeover=True) == tmp_path / 'r1.cut_1'
+    with BagWriter(bag, {'run_id': 'r1', 'status': 'complete', 'episodes': '2'}) as quick:
+        samples.fill(quick, 1)
+        for end in (slow.flush, slow.close):
+            with pytest.raises(BagError, match=r'taken the run over|earlier write failed'):
+                end()
+        samples.fill(quick, 1)
+    assert is_complete(bag)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ['r1', 'r1.cut_1']
 
 
 def test_set_aside_takes_a_damaged_bag_but_no_complete_one(write_bag):
