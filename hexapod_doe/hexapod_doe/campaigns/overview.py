@@ -58,11 +58,11 @@ def figures(progress: Progress) -> RenderableType:
 
 
 def _workers(progress: Progress) -> RenderableType:
-    table = Table('worker', 'runs done', 'episodes/s', 'runs now', box=None, pad_edge=False)
+    table = Table('worker', 'runs done', 'episodes/s', 'at work on', box=None, pad_edge=False)
     for worker in progress.workers:
-        run = worker.run
-        now = f'{run.run_id} {len(run.returns)}/{run.planned or "?"}' if run else ''
-        table.add_row(worker.name, str(worker.done), f'{worker.episodes_per_second:.2f}', now)
+        now = [f'{run.run_id} {len(run.returns)}/{run.planned or "?"}' for run in worker.runs]
+        rate = f'{worker.episodes_per_second:.2f}'
+        table.add_row(worker.name, str(worker.done), rate, ', '.join(now))
     return table if table.row_count else Text('no worker yet')
 
 

@@ -19,7 +19,7 @@ from hexapod_doe.campaigns.progress import Progress, State, duration
 
 PAGE_FILE = 'progress.html'
 _RELOAD_S = 30
-_POINTS = 48
+_POINTS = 32
 _WIDTH, _HEIGHT = 96, 24
 
 

@@ -55,8 +55,8 @@ class Worker:
     """What one worker has done and does."""
 
     name: str
-    run: Run | None
-    """Under way."""
+    runs: tuple[Run, ...]
+    """Under way; a fleet has many at once."""
     done: int
     """Runs."""
     episodes_per_second: float
@@ -95,7 +95,7 @@ class Progress:
     @property
     def episodes_per_second(self) -> float:
         """Rate of all workers that have a run."""
-        return sum(worker.episodes_per_second for worker in self.workers if worker.run)
+        return sum(worker.episodes_per_second for worker in self.workers if worker.runs)
 
     @property
     def seconds_left(self) -> float:
@@ -111,8 +111,8 @@ class Progress:
 
 def _worker(name: str, runs: Iterable[Run]) -> Worker:
     runs = list(runs)
-    current = next((run for run in runs if run.state is State.RUNNING), None)
-    rate = current.episodes_per_second if current else 0.0
+    current = tuple(run for run in runs if run.state is State.RUNNING)
+    rate = sum(run.episodes_per_second for run in current)
     if not rate:  # its present run has no episode yet
         seconds = sum(run.seconds for run in runs)
         fresh = sum(len(run.returns) - run.earlier for run in runs)

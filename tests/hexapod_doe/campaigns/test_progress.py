@@ -43,9 +43,14 @@ def test_the_rate_of_a_resumed_run_leaves_out_what_it_had_before():
 def test_a_worker_keeps_its_rate_until_its_next_run_has_an_episode():
     fresh = Run('b', '', State.RUNNING, '/w1', 10)
     (worker,) = made(DONE, fresh).workers
-    assert worker.run is fresh
+    assert worker.runs == (fresh,)
     assert worker.done == 1
     assert worker.episodes_per_second == pytest.approx(0.5)
+
+
+def test_the_runs_of_a_fleet_add_up():
+    runs = [Run(f'f{k}', '', State.RUNNING, '/fleet', 9, [0.0] * k, seconds=2.0) for k in (1, 3)]
+    assert made(*runs).episodes_per_second == pytest.approx(2.0)
 
 
 @pytest.mark.parametrize(
