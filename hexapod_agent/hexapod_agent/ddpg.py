@@ -6,6 +6,7 @@
 Lillicrap et al. 2016, with the order of operations of MATLAB's DDPG agent: critic, actor, targets.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -49,10 +50,11 @@ class Ddpg:
         critic: The action value and its training.
         batch_size: Transitions per update.
         target_smoothing: Share of the online network that moves into its target per update.
-        generator: Draws the initial weights.
+        generator: Draws the initial weights; None leaves them zero, for agents to be `put` in.
         agents: Independent agents that learn side by side.
         dtype: Number format of parameters, losses and optimisers.
         hidden_dtype: Number format of the hidden layers in an update; `dtype` if None.
+        device: Where everything is kept and computed.
     """
 
     def __init__(
@@ -63,25 +65,30 @@ class Ddpg:
         critic: CriticConfig,
         batch_size: int,
         target_smoothing: float,
-        generator: torch.Generator,
+        generator: torch.Generator | None,
         agents: int = 1,
         dtype: torch.dtype = torch.float32,
         hidden_dtype: torch.dtype | None = None,
+        device: torch.device | str = 'cpu',
     ) -> None:
         sizes = (observation_size, action_size)
         self._actor_config = actor
-        self._smoothing = target_smoothing
+        self._target_smoothing = target_smoothing
+        self._smoothing: float | Tensor = target_smoothing
         self._single = agents == 1
-        self.batch = Batch.empty(agents, batch_size, *sizes, dtype)
+        self.batch = Batch.empty(agents, batch_size, *sizes, dtype, device)
         self._batch = Batch(*(self._inner(tensor) for tensor in vars(self.batch).values()))
 
-        self.actor_parameters = ParameterStack(Actor.shapes(*sizes, actor.hidden), agents, dtype)
-        self.critic_parameters = ParameterStack(
-            Critic.shapes(*sizes, critic.hidden, critic.merge), agents, dtype
+        self.actor_parameters = ParameterStack(
+            Actor.shapes(*sizes, actor.hidden), agents, dtype, device
         )
-        for parameters in (self.actor_parameters, self.critic_parameters):
-            parameters.draw(initial_bounds(parameters.shapes), generator)
-        self.critic_parameters.arrays['output.bias'].add_(critic.initial_value)
+        self.critic_parameters = ParameterStack(
+            Critic.shapes(*sizes, critic.hidden, critic.merge), agents, dtype, device
+        )
+        if generator is not None:
+            for parameters in (self.actor_parameters, self.critic_parameters):
+                parameters.draw(initial_bounds(parameters.shapes), generator)
+            self.critic_parameters.arrays['output.bias'].add_(critic.initial_value)
         self._actor_target_parameters = self.actor_parameters.copy()
         self._critic_target_parameters = self.critic_parameters.copy()
         self._actor_optimizer = ClippedAdam(
@@ -123,6 +130,14 @@ class Ddpg:
             return self._update()
         finally:
             torch.set_flush_denormal(False)
+
+    def learn_only(self, agents: Sequence[int]) -> None:
+        """Let an update leave all other agents of the stack as they are, from now on."""
+        for optimizer in (self._actor_optimizer, self._critic_optimizer):
+            optimizer.move_only(agents)
+        smoothing = torch.zeros(self.actor_parameters.agents, 1, dtype=self.batch.reward.dtype)
+        smoothing[list(agents)] = self._target_smoothing
+        self._smoothing = smoothing.to(self.batch.reward.device)
 
     def _update(self) -> UpdateStatistics:
         critic_loss = self._update_critic()
@@ -192,6 +207,29 @@ class Ddpg:
         if 'actor_optimizer' in state:
             self._actor_optimizer.load_state_dict(state['actor_optimizer'])
             self._critic_optimizer.load_state_dict(state['critic_optimizer'])
+        self._refresh()
+
+    def put(self, agent: int, single: 'Ddpg') -> None:
+        """Take over a stack of one, of the same layers, as an agent of this stack.
+
+        Its observations may be smaller than this stack's, which are then to be filled with zeros.
+        """
+        for mine, its in zip(self._stacks().values(), single._stacks().values(), strict=True):
+            mine.put(agent, its)
+        self._actor_optimizer.put(agent, single._actor_optimizer)
+        self._critic_optimizer.put(agent, single._critic_optimizer)
+        self._refresh()
+
+    def take(self, agent: int, single: 'Ddpg') -> None:
+        """Write an agent of this stack to a stack of one: the inverse of `put`."""
+        for mine, its in zip(self._stacks().values(), single._stacks().values(), strict=True):
+            mine.take(agent, its)
+        self._actor_optimizer.take(agent, single._actor_optimizer)
+        self._critic_optimizer.take(agent, single._critic_optimizer)
+        single._refresh()
+
+    def _refresh(self) -> None:
+        """Let the updates' networks take over parameters that have moved."""
         for network in (self._actor, self._critic, self._target_actor, self._target_critic):
             network.refresh()
 

@@ -20,6 +20,31 @@ from hexapod_agent.observation import ACTION_SIZE, ObservationError, Observation
 Observation = NDArray[np.float32]
 
 
+def read_observation(
+    task: LineTask,
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    spec: ObservationSpec,
+    previous_action: NDArray[np.float32],
+) -> Observation:
+    """Observe a robot at the end of a control period, reading what the set needs and no more.
+
+    Args:
+        task: The robot and its line.
+        x: First state of its oscillators (6,).
+        y: Second state (6,).
+        spec: What is observed.
+        previous_action: Action (30,) of the period that just ended.
+
+    Raises:
+        ObservationError: A reading is not finite.
+    """
+    readings = read(task.simulation, (key for key in spec.readings if key in CHANNEL_READERS))
+    readings['oscillator'] = np.concatenate((x, y))
+    readings['line_offset'] = np.array([task.line_offset])
+    return spec.assemble(readings, previous_action)
+
+
 class HexapodLine(gymnasium.Env[Observation, NDArray[np.float32]]):
     """A hexapod that walks to a line on the floor and along it.
 
@@ -93,7 +118,6 @@ class HexapodLine(gymnasium.Env[Observation, NDArray[np.float32]]):
             -1.0, 1.0, (self.observation_spec.size,), np.float32
         )
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (ACTION_SIZE,), np.float32)
-        self._keys = tuple(key for key in self.observation_spec.readings if key in CHANNEL_READERS)
         self._run_seed = 0
         self._episode = -1
         self._previous_action = np.zeros(ACTION_SIZE, np.float32)
@@ -131,11 +155,9 @@ class HexapodLine(gymnasium.Env[Observation, NDArray[np.float32]]):
 
     def _observe(self) -> Observation:
         """Read what the set of channels needs, and nothing else."""
-        readings = read(self.task.simulation, self._keys)
-        readings['oscillator'] = np.concatenate((self.cpg.x, self.cpg.y))
-        readings['line_offset'] = np.array([self.task.line_offset])
+        cpg, spec = self.cpg, self.observation_spec
         try:
-            return self.observation_spec.assemble(readings, self._previous_action)
+            return read_observation(self.task, cpg.x, cpg.y, spec, self._previous_action)
         except ObservationError as error:
             raise ObservationError(
                 f'{error} (step {self.outcome.step} of episode {self._episode}, '

@@ -3,6 +3,8 @@
 
 """Gradient step of one network as MATLAB's trainer takes it: L2 term, clipping, Adam."""
 
+from collections.abc import Sequence
+
 import torch
 from torch import Tensor
 from torch.optim.adam import adam
@@ -43,9 +45,19 @@ class ClippedAdam:
             (array, tuple(range(1, array.ndim)), norm.view(-1, *[1] * (array.ndim - 1)))
             for array, norm in zip(arrays, self._norms, strict=True)
         ]
-        self._mean = torch.zeros_like(self._flat)
-        self._square = torch.zeros_like(self._flat)
-        self._steps = torch.zeros(())
+        self._mean, self._square = parameters.like(), parameters.like()
+        # Agents that began at different times are at different steps.
+        self._steps = self._flat.new_zeros(parameters.agents, dtype=torch.float32)
+        self._moved = self._rows(range(parameters.agents))
+
+    def move_only(self, agents: Sequence[int]) -> None:
+        """Leave the parameters of all other agents alone from now on."""
+        self._moved = self._rows(agents)
+
+    def _rows(self, agents: Sequence[int]) -> list[list[Tensor]]:
+        """Parameters, gradients, moments and step counts, a view per agent."""
+        stacks = (self._flat, self.gradients.flat, self._mean.flat, self._square.flat)
+        return [[stack[agent] for agent in agents] for stack in (*stacks, self._steps)]
 
     def step(self) -> None:
         """Regularise and clip the gradients in place, and move the parameters."""
@@ -56,13 +68,14 @@ class ClippedAdam:
         self._norms.clamp_(min=self._threshold).reciprocal_().mul_(self._threshold)
         for array, _, scale in self._clipped:
             array.mul_(scale)
+        parameters, gradients, mean, square, steps = self._moved
         adam(
-            [self._flat],
-            [self.gradients.flat],
-            [self._mean],
-            [self._square],
+            parameters,
+            gradients,
+            mean,
+            square,
             [],
-            [self._steps],
+            steps,
             fused=True,
             amsgrad=False,
             beta1=_DECAY_MEAN,
@@ -73,9 +86,22 @@ class ClippedAdam:
             maximize=False,
         )
 
+    def put(self, agent: int, single: 'ClippedAdam') -> None:
+        """Take over the state of a stack of one as an agent of this stack."""
+        self._mean.put(agent, single._mean)
+        self._square.put(agent, single._square)
+        self._steps[agent] = single._steps[0]
+
+    def take(self, agent: int, single: 'ClippedAdam') -> None:
+        """Write the state of an agent of this stack to a stack of one."""
+        self._mean.take(agent, single._mean)
+        self._square.take(agent, single._square)
+        single._steps[0] = self._steps[agent]
+
     def state_dict(self) -> dict[str, Tensor]:
         """Moments and step count."""
-        return {'mean': self._mean, 'square': self._square, 'steps': self._steps}
+        steps = self._steps[0] if len(self._steps) == 1 else self._steps
+        return {'mean': self._mean.flat, 'square': self._square.flat, 'steps': steps}
 
     def load_state_dict(self, state: dict[str, Tensor]) -> None:
         """Take over what `state_dict` gave."""

@@ -27,7 +27,7 @@ class ParameterStack:
 
     def __init__(
         self, shapes: Mapping[str, tuple[int, ...]], agents: int = 1,
-        dtype: torch.dtype = torch.float32,
+        dtype: torch.dtype = torch.float32, device: torch.device | str = 'cpu',
     ) -> None:  # fmt: skip
         self.shapes = dict(shapes)
         self.agents = agents
@@ -38,7 +38,7 @@ class ParameterStack:
             size += -(-math.prod(shape) // _ALIGNMENT) * _ALIGNMENT
             if len(shape) == 2:
                 weights_size = size
-        self.flat = torch.zeros(agents, size, dtype=dtype)
+        self.flat = torch.zeros(agents, size, dtype=dtype, device=device)
         self.flat_weights = self.flat[:, :weights_size]
         self.arrays = {
             name: self.flat[:, offsets[name] :][:, : math.prod(shape)].unflatten(1, shape)
@@ -47,7 +47,7 @@ class ParameterStack:
 
     def like(self) -> 'ParameterStack':
         """Make a stack of the same layout, filled with zeros: gradients."""
-        return ParameterStack(self.shapes, self.agents, self.flat.dtype)
+        return ParameterStack(self.shapes, self.agents, self.flat.dtype, self.flat.device)
 
     def copy(self) -> 'ParameterStack':
         """Make a stack of the same layout with the same numbers: a target network."""
@@ -70,3 +70,22 @@ class ParameterStack:
         for agent in range(self.agents):
             for name, array in self.arrays.items():
                 array[agent].uniform_(-bounds[name], bounds[name], generator=generator)
+
+    def put(self, agent: int, single: 'ParameterStack') -> None:
+        """Make a stack of one this stack's agent, its smaller arrays padded with zeros.
+
+        Zero columns for inputs that are always zero change nothing and stay zero: their gradient
+        is zero, and so are their L2 term and their moments.
+        """
+        for name, array in single.arrays.items():
+            self.arrays[name][agent].zero_()
+            self._part(agent, name, array).copy_(array[0])
+
+    def take(self, agent: int, single: 'ParameterStack') -> None:
+        """Write an agent of this stack to a stack of one, without the padding."""
+        for name, array in single.arrays.items():
+            array[0].copy_(self._part(agent, name, array))
+
+    def _part(self, agent: int, name: str, like: Tensor) -> Tensor:
+        """View of one agent's array, as much of it as a stack of one has."""
+        return self.arrays[name][agent][tuple(slice(size) for size in like.shape[1:])]

@@ -32,11 +32,28 @@ class Batch:
 
     @staticmethod
     def empty(
-        agents: int, batch: int, observation_size: int, action_size: int, dtype: torch.dtype
-    ) -> 'Batch':
-        """Allocate the tensors of a batch."""
+        agents: int, batch: int, observation_size: int, action_size: int, dtype: torch.dtype,
+        device: torch.device | str = 'cpu', pinned: bool = False,
+    ) -> 'Batch':  # fmt: skip
+        """Allocate the tensors of a batch; `pinned` ones copy to a device without waiting."""
         widths = (observation_size, action_size, 1, observation_size, 1)
-        return Batch(*(torch.zeros(agents, batch, width, dtype=dtype) for width in widths))
+        return Batch(
+            *(
+                torch.zeros(agents, batch, width, dtype=dtype, device=device, pin_memory=pinned)
+                for width in widths
+            )
+        )
+
+    def of(self, agent: int, observation_size: int) -> 'Batch':
+        """View of one agent's part (1, batch, ...), its observations as wide as that agent's."""
+        part, wide = slice(agent, agent + 1), slice(0, observation_size)
+        return Batch(
+            self.observation[part, :, wide],
+            self.action[part],
+            self.reward[part],
+            self.next_observation[part, :, wide],
+            self.bootstrap[part],
+        )
 
 
 class ReplayBuffer:
@@ -110,8 +127,8 @@ class ReplayBuffer:
         self._starts[(self._first + self._size) % self.capacity] = row
         self._size += 1
 
-    def sample(self, generator: np.random.Generator, batch: Batch, agent: int = 0) -> None:
-        """Draw transitions uniformly, with replacement, into one agent's part of a batch."""
+    def sample(self, generator: np.random.Generator, batch: Batch) -> None:
+        """Draw transitions uniformly, with replacement, into a batch of one agent."""
         count = batch.reward.shape[1]
         drawn = generator.integers(self._size, size=count)
         rows = self._starts[(self._first + drawn) % self.capacity]
@@ -122,10 +139,10 @@ class ReplayBuffer:
             (batch.next_observation, self._observation, last),
         ):
             torch.index_select(
-                torch.from_numpy(source), 0, torch.from_numpy(index), out=out[agent]
+                torch.from_numpy(source), 0, torch.from_numpy(index), out=out[0]
             )
-        batch.reward[agent, :, 0] = torch.from_numpy(reward)
-        batch.bootstrap[agent, :, 0] = torch.from_numpy(bootstrap)
+        batch.reward[0, :, 0] = torch.from_numpy(reward)
+        batch.bootstrap[0, :, 0] = torch.from_numpy(bootstrap)
 
     def _returns(
         self, rows: NDArray[np.int64]

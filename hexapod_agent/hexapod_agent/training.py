@@ -8,6 +8,7 @@ not on who drives or how long anything takes.
 """
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from hexapod_agent.config import AgentConfig
 from hexapod_agent.ddpg import Ddpg
 from hexapod_agent.noise import OrnsteinUhlenbeckNoise
 from hexapod_agent.observation import ACTION_SIZE, ObservationSpec
-from hexapod_agent.replay import ReplayBuffer
+from hexapod_agent.replay import Batch, ReplayBuffer
 from hexapod_agent.summary import EpisodeRecord, EpisodeSummary
 
 
@@ -103,8 +104,11 @@ class Trainer:
         Returns:
             Action (30,) with exploration noise, within +-1.
         """
-        self._store(observation, outcome)
-        output = self.agent.act(torch.from_numpy(observation).unsqueeze(0))[0].numpy()
+        self.store(observation, outcome)
+        return self.explore(self.agent.act(torch.from_numpy(observation).unsqueeze(0))[0].numpy())
+
+    def explore(self, output: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Return the action that is taken where the policy put out (30,): noise is added."""
         self._record.add_output(output)
         action = (output + self._noise.sample()).clip(-1.0, 1.0).astype(np.float32)
         self._action = action
@@ -112,26 +116,45 @@ class Trainer:
 
     def learn(self) -> None:
         """Take one gradient step, once the buffer holds a batch."""
-        if len(self._replay) < self.config.ddpg.batch_size:
-            return
-        self._replay.sample(self._replay_generator, self.agent.batch)
-        statistics = self.agent.update()
-        values = {name: float(value) for name, value in vars(statistics).items()}
-        for name, value in values.items():
+        if self.ready:
+            self.sample(self.agent.batch)
+            statistics = self.agent.update()
+            self.note_update({name: float(value) for name, value in vars(statistics).items()})
+
+    @property
+    def ready(self) -> bool:
+        """Whether the buffer holds a batch to learn from."""
+        return len(self._replay) >= self.config.ddpg.batch_size
+
+    def sample(self, batch: Batch) -> None:
+        """Draw the next update's transitions into a batch of one agent."""
+        self._replay.sample(self._replay_generator, batch)
+
+    def note_update(self, statistics: Mapping[str, float]) -> None:
+        """Take note of what an update saw, by the names of `UpdateStatistics`.
+
+        Raises:
+            TrainingDivergedError: It is not finite.
+        """
+        for name, value in statistics.items():
             if not math.isfinite(value):
                 raise self._diverged(f'the {name} of an update is {value}')
-        self._record.add_update(**values)
+        self._record.add_update(**statistics)
 
     def end_episode(self, observation: NDArray[np.float32], outcome: Outcome) -> EpisodeSummary:
         """Store the last step and close the episode."""
-        self._store(observation, outcome)
+        self.store(observation, outcome)
         self.returns.append(self._record.episode_return)
         self._summary = self._record.summarize(outcome, self.average_return)
         self.episode += 1
         return self._summary
 
-    def _store(self, observation: NDArray[np.float32], outcome: Outcome) -> None:
-        """Add the transition that ends in `observation`, or begin an episode with it."""
+    def store(self, observation: NDArray[np.float32], outcome: Outcome) -> None:
+        """Add the transition that ends in `observation`, or begin an episode with it.
+
+        Raises:
+            TrainingDivergedError: The observation or the reward is not finite.
+        """
         self._step = outcome.step
         if not np.isfinite(observation).all():
             index = int(np.flatnonzero(~np.isfinite(observation))[0])

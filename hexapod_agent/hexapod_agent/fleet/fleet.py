@@ -1,0 +1,112 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The loop of a fleet: runs take free places, step side by side, and leave when they are done."""
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+
+from hexapod_sim.task import Outcome, episode_seed
+
+from hexapod_agent.env import Observation
+from hexapod_agent.fleet.crew import Crew, Job
+from hexapod_agent.fleet.learners import Learners
+from hexapod_agent.fleet.robots import Robots
+from hexapod_agent.fleet.seat import Run, Seat
+from hexapod_agent.fleet.stopwatch import Stopwatch
+
+
+class Fleet:
+    """Places for runs that are trained in one process.
+
+    Each run does what it does alone, in the same order: observe, act, learn, step. Only the
+    pattern generators of all robots are one batch, and with them the learners if they are a
+    stack; physics and separate learners are jobs of the crew.
+
+    Attributes:
+        steps: Control periods so far, summed over the runs.
+        stopwatch: Where the time went.
+    """
+
+    def __init__(self, robots: Robots, learners: Learners, crew: Crew, places: int) -> None:
+        self._robots, self._learners, self._crew = robots, learners, crew
+        self._free = list(range(places))[::-1]
+        self._seats: list[Seat] = []
+        self.steps = 0
+        self.stopwatch = Stopwatch()
+
+    def train(self, runs: Iterator[Run]) -> None:
+        """Train every run to its end; the next one is asked for when a place is free."""
+        self._admit(runs)
+        while self._seats:
+            self._step()
+            if self._close():
+                self._admit(runs)
+
+    def _admit(self, runs: Iterator[Run]) -> None:
+        """Give the free places to the runs that come next."""
+        while self._free and (run := next(runs, None)) is not None:
+            place = self._free.pop()
+            observation, outcome = self._reset(place, run)
+            seat = Seat(place, run, observation, outcome)
+            self._learners.seat(seat)
+            run.trainer.begin_episode(run.trainer.episode)
+            self._seats.append(seat)
+
+    def _step(self) -> None:
+        """Take every robot through one control period."""
+        part, timed = self.stopwatch.part, self.stopwatch.timed
+        with part('learner'):
+            self._learners.act(self._seats, self._robots.actions)
+        with part('cpg'):
+            self._robots.command()
+        with part('learner'):
+            jobs = [timed('learner', job) for job in self._learners.learn(self._seats)]
+        # The longer jobs first, so that the threads end together.
+        self._crew.run([*jobs, *self._physics(self._seats)])
+        with part('learner'):
+            self._learners.collect()
+        self.steps += len(self._seats)
+
+    def _physics(self, seats: Sequence[Seat]) -> list[Job]:
+        return [self.stopwatch.timed('physics', partial(self._advance, seat)) for seat in seats]
+
+    def _advance(self, seat: Seat) -> None:
+        """Advance one robot and observe it, unless its run has failed."""
+
+        def advance() -> None:
+            seat.outcome = self._robots.advance(seat.place)
+            seat.observation = self._robots.observe(seat.place, seat.trainer.spec)
+
+        seat.attempt(advance)
+
+    def _close(self) -> bool:
+        """Close the episodes that are over; return whether a place has become free."""
+        for seat in list(self._seats):
+            if seat.fault is None and (seat.outcome.terminated or seat.outcome.truncated):
+                seat.attempt(partial(self._end_episode, seat))
+            if seat.fault is not None:
+                seat.run.failed(seat.fault)
+            elif seat.trainer.episode < seat.run.episodes:
+                continue
+            else:
+                seat.run.ended()
+            self._seats.remove(seat)
+            self._free.append(seat.place)
+            self._robots.actions[seat.place] = 0.0
+        return bool(self._free)
+
+    def _end_episode(self, seat: Seat) -> None:
+        """Close one run's episode and begin its next one, if it has one."""
+        trainer, run = seat.trainer, seat.run
+        if run.saves_next:
+            self._learners.settle(seat)
+        run.episode_ended(trainer.end_episode(seat.observation, seat.outcome))
+        if trainer.episode < run.episodes:
+            seat.observation, seat.outcome = self._reset(seat.place, run)
+            trainer.begin_episode(trainer.episode)
+
+    def _reset(self, place: int, run: Run) -> tuple[Observation, Outcome]:
+        trainer = run.trainer
+        seed = episode_seed(trainer.seed, trainer.episode)
+        return self._robots.reset(place, trainer.spec, seed)

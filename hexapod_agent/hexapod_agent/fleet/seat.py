@@ -1,0 +1,71 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""A run's place in a fleet, and what the fleet asks of a run."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from hexapod_sim.task import Outcome
+from numpy.typing import NDArray
+
+from hexapod_agent.observation import ObservationError
+from hexapod_agent.summary import EpisodeSummary
+from hexapod_agent.training import Trainer, TrainingDivergedError
+
+
+class Run(Protocol):
+    """A training run, and what becomes of it."""
+
+    trainer: Trainer
+    """The run, between two episodes when it takes its seat."""
+    episodes: int
+    """How many it is to have."""
+
+    @property
+    def saves_next(self) -> bool:
+        """Whether `episode_ended` will save the trainer after the episode that is under way."""
+
+    def episode_ended(self, summary: EpisodeSummary) -> None:
+        """Take note of an episode."""
+
+    def ended(self) -> None:
+        """Take note that the last episode is over."""
+
+    def failed(self, error: Exception) -> None:
+        """Take note that the run cannot go on."""
+
+
+@dataclass
+class Seat:
+    """A run at a place of the fleet.
+
+    Attributes:
+        place: Its number in every batch.
+        run: Who sits there.
+        observation: What its robot observes now (size,).
+        outcome: What its last step earned.
+        fault: Why the run cannot go on; no job is attempted for it any more.
+    """
+
+    place: int
+    run: Run
+    observation: NDArray[np.float32]
+    outcome: Outcome
+    fault: Exception | None = None
+
+    @property
+    def trainer(self) -> Trainer:
+        """The run's learner and its bookkeeping."""
+        return self.run.trainer
+
+    def attempt(self, job: Callable[[], None]) -> None:
+        """Do something for this run alone; a failure of its training is its own fault."""
+        if self.fault is not None:
+            return
+        try:
+            job()
+        except (TrainingDivergedError, ObservationError) as error:
+            self.fault = error

@@ -1,0 +1,108 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The learners of a fleet as one stack of networks, on the device that has them.
+
+Replay buffers, exploration noise and bookkeeping stay with each trainer, and so does the order of
+its random numbers: a stack learns what its trainers learn apart, but for the rounding of sums.
+"""
+
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from hexapod_agent.config import AgentConfig
+from hexapod_agent.ddpg import Ddpg, UpdateStatistics
+from hexapod_agent.fleet.crew import Crew, Job
+from hexapod_agent.fleet.seat import Seat
+from hexapod_agent.observation import ACTION_SIZE
+from hexapod_agent.replay import Batch
+
+
+class StackedLearners:
+    """One `Ddpg` with an agent per place, its inputs as wide as the widest observation.
+
+    Args:
+        config: Of every run.
+        observation_size: Numbers of the widest observation; narrower ones are filled with zeros.
+        places: Agents of the stack.
+        crew: Draws the batches.
+        device: Where the networks are.
+    """
+
+    def __init__(
+        self, config: AgentConfig, observation_size: int, places: int, crew: Crew, device: str
+    ) -> None:
+        ddpg, wide = config.ddpg, torch.float32
+        narrow = torch.bfloat16 if config.training.precision == 'bfloat16' else None
+        self._crew = crew
+        self._device = torch.device(device)
+        self._stack = Ddpg(
+            observation_size, ACTION_SIZE, config.actor, config.critic, ddpg.batch_size,
+            ddpg.target_smoothing, None, places, wide, narrow, self._device,
+        )  # fmt: skip
+        pinned = self._device.type != 'cpu'
+        self._drawn = Batch.empty(
+            places, ddpg.batch_size, observation_size, ACTION_SIZE, wide, pinned=pinned
+        )
+        self._observations = torch.zeros(places, observation_size, pin_memory=pinned)
+        self._learning: tuple[int, ...] = ()
+        self._pending: tuple[list[Seat], UpdateStatistics] | None = None
+
+    def seat(self, seat: Seat) -> None:
+        """Copy a trainer's networks into its place of the stack."""
+        self._stack.put(seat.place, seat.trainer.agent)
+        for tensor in (self._observations, *vars(self._drawn).values()):
+            tensor[seat.place].zero_()
+
+    def settle(self, seat: Seat) -> None:
+        """Copy the networks back."""
+        self._stack.take(seat.place, seat.trainer.agent)
+
+    def act(self, seats: Sequence[Seat], actions: NDArray[np.float32]) -> None:
+        """Compute all policies in one pass, and let each trainer add its noise."""
+        for seat in seats:
+            seat.attempt(partial(seat.trainer.store, seat.observation, seat.outcome))
+            row = self._observations[seat.place, : seat.observation.size]
+            row.copy_(torch.from_numpy(seat.observation))
+        observations = self._observations.to(self._device, non_blocking=True)
+        outputs = self._stack.act(observations).cpu().numpy()
+        for seat in seats:
+            if seat.fault is None:
+                actions[seat.place] = seat.trainer.explore(outputs[seat.place])
+
+    def learn(self, seats: Sequence[Seat]) -> list[Job]:
+        """Draw a batch for each trainer that has one, and send the update to the device."""
+        ready = [seat for seat in seats if seat.fault is None and seat.trainer.ready]
+        if not ready:
+            return []
+        places = tuple(seat.place for seat in ready)
+        if places != self._learning:
+            self._learning = places
+            self._stack.learn_only(places)
+        self._crew.run(partial(self._draw, seat) for seat in ready)
+        for here, there in zip(
+            vars(self._drawn).values(), vars(self._stack.batch).values(), strict=True
+        ):
+            there.copy_(here, non_blocking=True)
+        self._pending = ready, self._stack.update()
+        return []
+
+    def _draw(self, seat: Seat) -> None:
+        trainer = seat.trainer
+        trainer.sample(self._drawn.of(seat.place, trainer.spec.size))
+
+    def collect(self) -> None:
+        """Fetch the statistics of the update, which waits for it."""
+        if self._pending is None:
+            return
+        seats, statistics = self._pending
+        self._pending = None
+        names = tuple(vars(statistics))
+        columns = torch.stack(tuple(vars(statistics).values()), dim=1).tolist()
+        for seat in seats:
+            values = dict(zip(names, columns[seat.place], strict=True))
+            seat.attempt(partial(seat.trainer.note_update, values))

@@ -1,0 +1,91 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Runs for a fleet, and the same runs trained alone."""
+
+from collections.abc import Callable, Iterator
+
+import pytest
+from hexapod_agent.config import AgentConfig
+from hexapod_agent.env import HexapodLine
+from hexapod_agent.fleet.crew import Crew
+from hexapod_agent.fleet.fleet import Fleet
+from hexapod_agent.fleet.learners import Learners, SeparateLearners
+from hexapod_agent.fleet.robots import Robots
+from hexapod_agent.fleet.seat import Run
+from hexapod_agent.fleet.stacked import StackedLearners
+from hexapod_agent.observation import LETTERS, ObservationSpec
+from hexapod_agent.summary import EpisodeSummary
+from hexapod_agent.train import train_episode
+from hexapod_agent.training import Trainer
+
+
+class NotedRun(Run):
+    """Keeps what the fleet says of a run."""
+
+    saves_next = True
+
+    def __init__(self, trainer: Trainer, episodes: int) -> None:
+        self.trainer, self.episodes = trainer, episodes
+        self.summaries: list[EpisodeSummary] = []
+        self.end: str | Exception = ''
+
+    def episode_ended(self, summary: EpisodeSummary) -> None:
+        self.summaries.append(summary)
+
+    def ended(self) -> None:
+        self.end = 'ended'
+
+    def failed(self, error: Exception) -> None:
+        self.end = error
+
+
+@pytest.fixture(scope='session')
+def full_config() -> AgentConfig:
+    """Networks and batches of the real size, and its arithmetic; episodes of 70 steps."""
+    changes = {'task': {'time_limit_steps': 70}, 'ddpg': {'buffer_size': 5000}}
+    return AgentConfig.from_mapping(changes, 'full_config')
+
+
+@pytest.fixture
+def new_run() -> Callable[..., NotedRun]:
+    def make(config: AgentConfig, observations: str, seed: int, episodes: int = 3) -> NotedRun:
+        return NotedRun(Trainer(ObservationSpec(observations), config, seed), episodes)
+
+    return make
+
+
+@pytest.fixture
+def train_alone() -> Callable[[NotedRun], NotedRun]:
+    """What `train` does to a run."""
+
+    def train(run: NotedRun) -> NotedRun:
+        env = HexapodLine(run.trainer.spec.letters, run.trainer.config)
+        while run.trainer.episode < run.episodes:
+            run.episode_ended(train_episode(env, run.trainer))
+        return run
+
+    return train
+
+
+@pytest.fixture
+def train_fleet() -> Callable[..., Fleet]:
+    """Train runs of one configuration in a fleet."""
+
+    def train(runs: list[NotedRun], places: int, threads: int = 2, stacked: bool = False) -> Fleet:
+        config = runs[0].trainer.config
+        with Crew(threads) as crew:
+            learners: Learners = (
+                StackedLearners(config, ObservationSpec(LETTERS).size, places, crew, 'cpu')
+                if stacked
+                else SeparateLearners(crew)
+            )
+            fleet = Fleet(Robots(config, places), learners, crew, places)
+            fleet.train(iterator(runs))
+        return fleet
+
+    return train
+
+
+def iterator(runs: list[NotedRun]) -> Iterator[NotedRun]:
+    return iter(runs)

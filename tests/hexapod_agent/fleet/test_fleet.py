@@ -1,0 +1,84 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""A fleet gives each run the numbers that it gets alone."""
+
+import numpy as np
+import pytest
+import torch
+from hexapod_agent.training import TrainingDivergedError
+
+RUNS = (('ABCDEFG', 3), ('', 4), ('BC', 5))
+
+
+def assert_same_state(one, other) -> None:
+    """Compare everything that a checkpoint holds, to the last bit."""
+    ours, theirs = (run.trainer.state_dict(to_resume=True) for run in (one, other))
+    assert_equal(ours, theirs)
+
+
+def assert_equal(ours, theirs) -> None:
+    assert type(ours) is type(theirs)
+    if isinstance(ours, dict):
+        assert ours.keys() == theirs.keys()
+        for key in ours:
+            assert_equal(ours[key], theirs[key])
+    elif isinstance(ours, torch.Tensor):
+        assert torch.equal(ours, theirs)
+    else:
+        np.testing.assert_array_equal(ours, theirs)
+
+
+def assert_same_results(one, other) -> None:
+    assert len(one.summaries) == len(other.summaries) == one.episodes
+    for ours, theirs in zip(one.summaries, other.summaries, strict=True):
+        assert_equal(vars(ours), vars(theirs))
+
+
+@pytest.mark.parametrize('threads', [1, 3])
+def test_runs_equal_those_trained_alone_to_the_last_bit(
+    full_config, new_run, train_alone, train_fleet, threads
+):
+    fleet = [new_run(full_config, letters, seed) for letters, seed in RUNS]
+    # Fewer places than runs: the third run takes the place that is free first.
+    train_fleet(fleet, places=2, threads=threads)
+    for run, (letters, seed) in zip(fleet, RUNS, strict=True):
+        alone = train_alone(new_run(full_config, letters, seed))
+        assert run.end == 'ended'
+        assert run.summaries[-1].updates > 0
+        assert_same_results(run, alone)
+        assert_same_state(run, alone)
+
+
+def test_a_stack_learns_what_its_runs_learn_alone(small_config, new_run, train_alone, train_fleet):
+    stacked = [new_run(small_config, letters, seed) for letters, seed in RUNS]
+    train_fleet(stacked, places=2, stacked=True)
+    for run, (letters, seed) in zip(stacked, RUNS, strict=True):
+        alone = train_alone(new_run(small_config, letters, seed))
+        # Sums are rounded otherwise: the first episodes agree closely, later ones drift apart.
+        for ours, theirs in zip(run.summaries[:2], alone.summaries[:2], strict=True):
+            assert ours.episode_return == pytest.approx(theirs.episode_return, rel=1e-3)
+            assert ours.updates == theirs.updates
+        for name, array in alone.trainer.agent.actor_parameters.arrays.items():
+            ours = run.trainer.agent.actor_parameters.arrays[name]
+            torch.testing.assert_close(ours, array, rtol=1e-2, atol=1e-3)
+
+
+def test_a_run_that_diverges_leaves_the_others_alone(
+    small_config, new_run, train_alone, train_fleet
+):
+    runs = [new_run(small_config, 'B', seed) for seed in (1, 2)]
+    runs[0].trainer.agent.critic_parameters.flat.fill_(float('inf'))
+    train_fleet(runs, places=2)
+    assert isinstance(runs[0].end, TrainingDivergedError)
+    assert_same_results(runs[1], train_alone(new_run(small_config, 'B', 2)))
+
+
+def test_a_fleet_counts_steps_and_the_parts_of_its_time(small_config, new_run, train_fleet):
+    runs = [new_run(small_config, '', seed, episodes=2) for seed in (1, 2)]
+    fleet = train_fleet(runs, places=2)
+    assert fleet.steps == sum(summary.steps for run in runs for summary in run.summaries)
+    shares = fleet.stopwatch.shares()
+    assert list(shares) == ['physics', 'cpg', 'learner', 'rest']
+    assert sum(shares.values()) == pytest.approx(1.0)
+    assert all(0.0 < share < 1.0 for share in shares.values())
