@@ -1,56 +1,79 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Node `play`: has the worker of its namespace play a checkpoint, then ends."""
+"""Node `play`: plays a checkpoint, by the worker of its namespace or in real time by itself."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from hexapod_interfaces.action import TrainRun
 from hexapod_node.conditions import until_true
 from hexapod_node.coroutines import start, until
+from hexapod_node.diagnostics import Diagnostics
 from hexapod_node.parameters import Parameter, declare
 from hexapod_node.spin import run
+from hexapod_node.sync import REALTIME, SYNC
 from rclpy.action import ActionClient
 from rclpy.node import Node
 from rclpy.task import Future
 
+from hexapod_agent import real_time
+from hexapod_agent.deployment import DeployedAgent
+
 PARAMETERS = (
+    SYNC,
     Parameter('checkpoint', '', 'agent to play: a file of train'),
     Parameter('config', '', "file of changes to the checkpoint's configuration; empty for none"),
-    Parameter('episodes', 1, 'how many episodes', range=(1, 1_000_000)),
-    Parameter('seed', 1, 'seed of the starts', range=(0, 2**63 - 1)),
-    Parameter('bag', '', 'directory of the bag to record; empty to record nothing'),
+    Parameter('episodes', 1, 'lockstep: how many episodes', range=(1, 1_000_000)),
+    Parameter('seed', 1, 'lockstep: seed of the starts', range=(0, 2**63 - 1)),
+    Parameter('bag', '', 'lockstep: directory of the bag to record; empty to record nothing'),
     Parameter(
-        'worker_timeout', 30.0, 'longest wait for the worker', unit='s', range=(1.0, 86400.0)
+        'worker_timeout',
+        30.0,
+        'lockstep: longest wait for the worker',
+        unit='s',
+        range=(1.0, 86400.0),
     ),
 )
 
 
 class PlayNode(Node):
-    """Sends one goal of the action `train_run` and reports how it ended.
+    """Has the worker play episodes in lock-step, or drives a robot in real time until a signal.
 
     Attributes:
-        exit_status: of the process, once the run is over: 0 if it was played to its end.
+        exit_status: of the process, once there is nothing more to do: 0 if all went well.
     """
 
     def __init__(self) -> None:
         super().__init__('play')
-        declare(self, PARAMETERS)
+        declare(self, (*PARAMETERS, *real_time.PARAMETERS))
         self.exit_status: int | None = None
-        goal = self._goal()
-        self._client = ActionClient(self, TrainRun, 'train_run')
-        start(self._play(goal)).add_done_callback(self._on_played)
+        if self._value('sync') == REALTIME:
+            agent = DeployedAgent.load(self._checkpoint(), self._value('config'))
+            self._play = real_time.RealTimePlay(self, agent)
+            Diagnostics(self, self._play.health)
+            start(self._play.begin()).add_done_callback(self._on_begun)
+        else:
+            goal = self._goal()
+            self._client = ActionClient(self, TrainRun, 'train_run')
+            start(self._have_played(goal)).add_done_callback(self._on_played)
+
+    def _value(self, name: str) -> Any:
+        return self.get_parameter(name).value
+
+    def _checkpoint(self) -> str:
+        if not self._value('checkpoint'):
+            raise ValueError("checkpoint '': expected a file of train")
+        return str(self._value('checkpoint'))
 
     def _goal(self) -> TrainRun.Goal:
-        value = {entry.name: self.get_parameter(entry.name).value for entry in PARAMETERS}
-        if not value['checkpoint']:
-            raise ValueError("checkpoint '': expected a file of train")
+        value = {entry.name: self._value(entry.name) for entry in PARAMETERS}
         return TrainRun.Goal(
             run_id=Path(value['bag']).name or 'play',
-            checkpoint=_absolute(value['checkpoint']),
+            checkpoint=_absolute(self._checkpoint()),
             config=_absolute(value['config']),
             seed=value['seed'],
             episodes=value['episodes'],
@@ -58,7 +81,7 @@ class PlayNode(Node):
             record_every=1,
         )
 
-    async def _play(self, goal: TrainRun.Goal) -> TrainRun.Result:
+    async def _have_played(self, goal: TrainRun.Goal) -> TrainRun.Result:
         """Wait for the worker, send the goal and return its result.
 
         Raises:
@@ -75,6 +98,12 @@ class PlayNode(Node):
         if result.message:
             raise RuntimeError(result.message)
         return result
+
+    def _on_begun(self, begun: Future) -> None:
+        error = begun.exception()
+        if error is not None:
+            self.get_logger().error(str(error))
+            self.exit_status = 1
 
     def _on_played(self, played: Future) -> None:
         error = played.exception()

@@ -24,8 +24,12 @@ class ViewerError(ValueError):
 class Viewer:
     """MuJoCo's passive viewer, its camera on the robot; closing the window ends the pacing."""
 
-    def __init__(self, simulation: Simulation) -> None:
+    def __init__(self, simulation: Simulation, paced: bool = True) -> None:
         """Open the window.
+
+        Args:
+            simulation: What to show.
+            paced: Whether `show` waits until a control period is over.
 
         Raises:
             ViewerError: there is no display.
@@ -42,11 +46,15 @@ class Viewer:
         )
         self._handle.cam.type = mujoco.mjtCamera.mjCAMERA_TRACKING
         self._handle.cam.trackbodyid = simulation.model.body('base_link').id
+        self._paced = paced
         self._due = time.monotonic()
 
     def show(self) -> None:
-        """Show the simulation as it is, not before a control period after the last time."""
+        """Show the simulation as it is; if paced, not before a period after the last time."""
         if not self._handle.is_running():
+            return
+        if not self._paced:
+            self._handle.sync()
             return
         now = time.monotonic()
         self._due = max(self._due + _PERIOD_S, now)  # late once is not to be made up for

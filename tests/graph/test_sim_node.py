@@ -135,7 +135,7 @@ def test_time_goes_on_over_resets_and_the_state_starts_afresh(rig: Rig) -> None:
 def test_nothing_is_read_for_topics_that_nobody_hears(rig: Rig, monkeypatch) -> None:
     read = []
     monkeypatch.setattr(
-        'hexapod_sim.sim_node.read', lambda simulation, keys: read.append(set(keys)) or {}
+        'hexapod_sim.publishers.read', lambda simulation, keys: read.append(set(keys)) or {}
     )
     rig.listen('line_offset', LineOffset)
     rig.reset()

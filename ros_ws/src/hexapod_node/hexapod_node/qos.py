@@ -35,3 +35,19 @@ RECORD = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1000,
 )
+
+# In real time drivers of any kind match, and what was lost is not sent again.
+DRIVER = QoSProfile(
+    reliability=ReliabilityPolicy.BEST_EFFORT,
+    durability=DurabilityPolicy.VOLATILE,
+    history=HistoryPolicy.KEEP_LAST,
+    depth=10,
+)
+
+# What a driver hears in real time, reliable or not; nobody gets an old command.
+COMMAND = QoSProfile(
+    reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.VOLATILE,
+    history=HistoryPolicy.KEEP_LAST,
+    depth=1,
+)

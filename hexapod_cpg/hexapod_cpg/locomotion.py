@@ -1,0 +1,85 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Walks as commanded, and stops safely: slowly back to the standing pose."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hexapod_cpg.cpg import Cpg
+from hexapod_cpg.joint_guard import JointGuard
+from hexapod_cpg.mapping import Command
+from hexapod_cpg.oscillator import HopfConfig
+from hexapod_sim import robot
+
+
+class Motion(StrEnum):
+    """What the legs do."""
+
+    STANDING = 'standing'
+    WALKING = 'walking'
+    STOPPING = 'stopping'
+
+
+class Locomotion:
+    """A pattern generator behind a joint guard.
+
+    Attributes:
+        cpg: The pattern generator.
+        guard: What its targets pass through.
+        motion: What the last control period did.
+    """
+
+    def __init__(self, config: HopfConfig, guard: JointGuard, stop_rate: float) -> None:
+        """Begin standing.
+
+        Args:
+            config: Of the oscillators.
+            guard: Of the joints.
+            stop_rate: Rate of every joint on its way back to the standing pose [rad/s].
+        """
+        self.cpg = Cpg(config)
+        self.guard = guard
+        self.motion = Motion.STANDING
+        self._stop_rate = stop_rate
+
+    def restart(self, config: HopfConfig) -> None:
+        """Put the oscillators at the start of the gait."""
+        self.cpg = Cpg(config)
+
+    def stand(self, config: HopfConfig) -> None:
+        """Begin an episode: the robot was put in its standing pose."""
+        self.restart(config)
+        self.guard.reset()
+        self.motion = Motion.STANDING
+
+    def play(self, command: Command) -> NDArray[np.float64]:
+        """Advance one control period, within the joint limits; targets (SUBSTEPS, 18) [rad].
+
+        Raises:
+            ValueError: The command is of no use; nothing has changed.
+        """
+        targets = self.guard.limit(self.cpg.advance(command))
+        self.motion = Motion.WALKING
+        return targets
+
+    def walk(self, command: Command) -> NDArray[np.float64]:
+        """Advance one control period, within joint limits and rates.
+
+        Raises:
+            ValueError: The command is of no use; nothing has changed.
+        """
+        targets = self.guard.follow(self.cpg.advance(command))
+        self.motion = Motion.WALKING
+        return targets
+
+    def stop(self) -> NDArray[np.float64]:
+        """Go on with the way back to the standing pose for one control period, or stand there."""
+        targets = self.guard.approach(robot.NEUTRAL_POSE, self._stop_rate)
+        stands = np.array_equal(self.guard.position, robot.NEUTRAL_POSE)
+        self.motion = Motion.STANDING if stands else Motion.STOPPING
+        return targets

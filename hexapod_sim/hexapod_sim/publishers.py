@@ -1,0 +1,92 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""What the sim publishes of a task: sensors, the line, the outcome, the truth and the clock."""
+
+from __future__ import annotations
+
+from array import array
+from typing import TYPE_CHECKING
+
+from hexapod_interfaces.msg import LineOffset, StepOutcome
+from hexapod_node.qos import LOCK_STEP
+from hexapod_node.stamps import time_message
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Clock
+
+from hexapod_sim.messages import SENSOR_TOPICS, fill_odometry, new_odometry
+from hexapod_sim.robot import ODOM_FRAME
+from hexapod_sim.sensors import read
+from hexapod_sim.task import LineTask, Outcome
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+    from rclpy.publisher import Publisher
+
+
+class SimPublishers:
+    """Publishes samples of a task; what nobody hears is neither read nor sent.
+
+    The publishers are reliable, which best-effort subscriptions match as well.
+    """
+
+    def __init__(self, node: Node, task: LineTask) -> None:
+        self._task = task
+        self._sensors = [
+            (
+                sensor,
+                sensor.new(),
+                node.create_publisher(sensor.message_type, sensor.name, LOCK_STEP),
+            )
+            for sensor in SENSOR_TOPICS
+        ]
+        self._line_offset = LineOffset()
+        self._line_offset.header.frame_id = ODOM_FRAME
+        self._line_offset_publisher = node.create_publisher(LineOffset, 'line_offset', LOCK_STEP)
+        self._outcome = StepOutcome()
+        self._outcome_publisher = node.create_publisher(StepOutcome, 'step_outcome', LOCK_STEP)
+        self._odometry = new_odometry()
+        self._odometry_publisher = node.create_publisher(Odometry, 'odom', LOCK_STEP)
+        # Relative: in the root namespace this is /clock, and workers side by side do not clash.
+        self._clock_publisher = node.create_publisher(Clock, 'clock', LOCK_STEP)
+        self.all: list[Publisher] = [
+            *(publisher for _, _, publisher in self._sensors),
+            self._line_offset_publisher,
+            self._outcome_publisher,
+            self._odometry_publisher,
+            self._clock_publisher,
+        ]
+
+    def publish(self, outcome: Outcome, now_ns: int) -> None:
+        """Publish the sample of now: sensors first, then what they earned, then the clock."""
+        stamp = time_message(now_ns)
+        heard = [entry for entry in self._sensors if entry[2].get_subscription_count()]
+        needed = {key for sensor, _, _ in heard for key in sensor.readings}
+        readings = read(self._task.simulation, needed)
+        for sensor, message, publisher in heard:
+            message.header.stamp = stamp
+            sensor.fill(message, readings)
+            publisher.publish(message)
+        if self._line_offset_publisher.get_subscription_count():
+            self._line_offset.header.stamp = stamp
+            self._line_offset.offset = self._task.line_offset
+            self._line_offset_publisher.publish(self._line_offset)
+        if self._odometry_publisher.get_subscription_count():
+            fill_odometry(self._odometry, self._task.simulation)
+            self._odometry.header.stamp = stamp
+            self._odometry_publisher.publish(self._odometry)
+        self._publish_outcome(outcome, now_ns)
+        if self._clock_publisher.get_subscription_count():
+            self._clock_publisher.publish(Clock(clock=stamp))
+
+    def _publish_outcome(self, outcome: Outcome, now_ns: int) -> None:
+        message = self._outcome
+        message.header.stamp = time_message(now_ns)
+        message.step = outcome.step
+        message.reward = outcome.reward
+        message.term_names = list(outcome.terms)
+        message.term_values = array('d', outcome.terms.values())
+        message.terminated = outcome.terminated
+        message.truncated = outcome.truncated
+        message.cause = outcome.cause
+        self._outcome_publisher.publish(message)
