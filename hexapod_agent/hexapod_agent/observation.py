@@ -112,7 +112,7 @@ CHANNELS = (
     Channel(
         'C', 'body orientation', ('imu/data',), 'sensor_msgs/msg/Imu',
         ('orientation',), (4,), ('1',), (1.0,), 'IMU with fusion',
-        limits=(1.02,), frames=(IMU_FRAME,),
+        limits=(2.0,), frames=(IMU_FRAME,),
     ),
     Channel(
         'D', 'body angular velocity', ('imu/data_raw',), 'sensor_msgs/msg/Imu',

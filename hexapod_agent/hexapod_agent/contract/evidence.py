@@ -1,0 +1,92 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""What was heard of the sensor topics: who offers them, and decoded samples with their times."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import reduce
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+_AXES = ('x', 'y', 'z', 'w')
+_NANOSECONDS = 1_000_000_000
+
+
+@dataclass(frozen=True)
+class Offer:
+    """One publisher of a topic."""
+
+    publisher: str
+    """Its node, fully qualified; empty for a bag."""
+    message_type: str
+    """Such as 'sensor_msgs/msg/Imu'."""
+    reliable: bool = True
+    """Whether it sends lost messages again; best effort otherwise."""
+
+
+@dataclass(frozen=True)
+class Sample:
+    """One message, decoded."""
+
+    arrival_ns: int
+    """When it came, on one clock for all topics."""
+    stamp_ns: int
+    """When its driver says that it was measured."""
+    frame: str
+    """Frame of its header."""
+    names: tuple[str, ...]
+    """Joint names of a message that has them."""
+    values: Mapping[str, NDArray[np.float64]]
+    """Numbers of each field, by its path such as 'twist.linear'."""
+
+
+@dataclass(frozen=True)
+class TopicEvidence:
+    """What was heard of one topic."""
+
+    topic: str
+    """Its name on the graph or in the bag, after remapping."""
+    offers: tuple[Offer, ...] = ()
+    """Its publishers."""
+    samples: tuple[Sample, ...] = ()
+    """In the order of their arrival."""
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What was heard of all topics of a set."""
+
+    topics: Mapping[str, TopicEvidence]
+    """By the relative names of the sensor table."""
+    end_ns: int
+    """When listening ended, on the clock of the arrivals."""
+
+
+def sample(message: Any, paths: Iterable[str], arrival_ns: int) -> Sample:
+    """Take the numbers that are checked out of a message of any ROS library.
+
+    Args:
+        message: has a header, and the attributes that the paths name.
+        paths: fields to take, dots between nested ones.
+        arrival_ns: when it came.
+    """
+    stamp = message.header.stamp
+    return Sample(
+        arrival_ns=arrival_ns,
+        stamp_ns=int(stamp.sec) * _NANOSECONDS + int(stamp.nanosec),
+        frame=str(message.header.frame_id),
+        names=tuple(getattr(message, 'name', ())),
+        values={path: _numbers(reduce(getattr, path.split('.'), message)) for path in paths},
+    )
+
+
+def _numbers(value: Any) -> NDArray[np.float64]:
+    """Return a scalar, an array, a vector x y z or a quaternion x y z w as one array."""
+    if hasattr(value, 'x'):
+        value = [getattr(value, axis) for axis in _AXES if hasattr(value, axis)]
+    return np.atleast_1d(np.asarray(value, dtype=np.float64))

@@ -1,0 +1,122 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Whether an IMU's axes and signs are ours: force up at rest, unit quaternions, upright."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from hexapod_sim.robot import GRAVITY
+from numpy.typing import NDArray
+
+from hexapod_agent.contract.fields import (
+    ACCELERATION,
+    ACCELERATION_COVARIANCE,
+    ORIENTATION_COVARIANCE,
+)
+from hexapod_agent.contract.finding import Finding
+from hexapod_agent.contract.subject import Subject
+from hexapod_agent.contract.units import conversion, other_unit
+
+_IMU = 'sensor_msgs/msg/Imu'
+# REP-145: the first covariance is -1 where the device does not give the quantity.
+_NOT_GIVEN = -1.0
+_AXES = 'xyz'
+
+
+def check_gravity(subject: Subject) -> Iterator[Finding]:
+    """Check that an accelerometer at rest reads +9.81 m/s² along z, upwards (REP-145)."""
+    if subject.channel.message_type != _IMU or not _given(subject, ACCELERATION_COVARIANCE):
+        return
+    readings = subject.stack(ACCELERATION)
+    mean = np.nan_to_num(readings).mean(axis=0)
+    norm = float(np.linalg.norm(mean))
+    if norm == 0.0:
+        yield _not_measured(subject)
+        return
+    most, least = ((1 + sign * subject.limits.gravity_error) * GRAVITY for sign in (1, -1))
+    if not least <= norm <= most:
+        name, factor = other_unit('m/s²', norm, most, least)
+        guess = f', which looks like {name}' if name else ''
+        yield subject.finding(
+            'wrong_unit',
+            ACCELERATION,
+            f'has a mean of {norm:.4g}{guess}',
+            f'{GRAVITY:g} m/s²',
+            conversion('m/s²', name, factor),
+        )
+    if mean[2] < norm * math.cos(subject.limits.max_tilt):
+        yield _wrong_direction(subject, mean / norm)
+
+
+def check_orientation(subject: Subject) -> Iterator[Finding]:
+    """Check that quaternions have norm 1 and an upright body, in the order x y z w."""
+    if 'orientation' not in subject.channel.readings:
+        return
+    field, cure = 'orientation', 'fill it from a device with sensor fusion'
+    if not _given(subject, ORIENTATION_COVARIANCE):
+        found = 'is marked as not measured (covariance -1)'
+        yield subject.finding('bad_quaternion', field, found, 'a unit quaternion', cure)
+        return
+    q = subject.stack(field)
+    norms = np.linalg.norm(q, axis=1)
+    worst = float(norms[np.argmax(np.abs(norms - 1.0))])
+    if abs(worst - 1.0) > subject.limits.norm_error:
+        if worst > subject.limits.norm_error:
+            cure = 'divide it by its norm in the driver'
+        found = f'has a norm of {worst:.3f}'
+        yield subject.finding('bad_quaternion', field, found, 'norm 1', cure)
+        return
+    if np.median(tilt(q)) > subject.limits.max_tilt:
+        yield _tilted(subject, q)
+
+
+def tilt(q: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the angle between the body's z axis and up, for quaternions x y z w (n, 4) [rad].
+
+    The z component of the rotated z axis is 1 - 2 (x² + y²).
+    """
+    return np.arccos(np.clip(1.0 - 2.0 * (q[:, 0] ** 2 + q[:, 1] ** 2), -1.0, 1.0))
+
+
+def _given(subject: Subject, covariance: str) -> bool:
+    return bool(subject.samples[0].values[covariance][0] != _NOT_GIVEN)
+
+
+def _not_measured(subject: Subject) -> Finding:
+    return subject.finding(
+        'not_measured',
+        ACCELERATION,
+        'is zero',
+        f'+{GRAVITY:g} m/s² on z at rest, or a covariance that begins with -1',
+        'fill it, so that axes and signs can be checked',
+        'warning',
+    )
+
+
+def _wrong_direction(subject: Subject, up: NDArray[np.float64]) -> Finding:
+    axis = int(np.argmax(np.abs(up)))
+    sign = '+' if up[axis] > 0 else '-'
+    flipped = axis == 2
+    return subject.finding(
+        'flipped_gravity' if flipped else 'wrong_axes',
+        f'{ACCELERATION}.z' if flipped else ACCELERATION,
+        f'points to {sign}{_AXES[axis]} at rest',
+        f'the specific force, +{GRAVITY:g} m/s² on z',
+        'negate it, or turn the device: it reports gravity itself, or hangs upside down'
+        if flipped
+        else 'turn the readings into x forward, y left, z up',
+    )
+
+
+def _tilted(subject: Subject, q: NDArray[np.float64]) -> Finding:
+    found = f'says that the body is tilted by {np.degrees(np.median(tilt(q))):.0f} degrees'
+    expected = 'an upright robot, quaternion x y z w of base_link in a frame with z up'
+    if np.median(tilt(np.roll(q, -1, axis=1))) <= subject.limits.max_tilt:
+        cure = 'publish x y z w: the numbers come as w x y z'
+    else:
+        cure = 'turn it into x forward, y left, z up (REP-103); a NED device has z down'
+    return subject.finding('bad_quaternion', 'orientation', found, expected, cure)

@@ -1,0 +1,96 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Whether messages are what they should be: frame, joint names, lengths, finite numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from hexapod_sim.robot import JOINTS
+
+from hexapod_agent.contract.fields import JOINT_TYPE, Field, observed_fields
+from hexapod_agent.contract.finding import Finding
+from hexapod_agent.contract.subject import Subject
+from hexapod_agent.joint_names import joint_order
+
+
+def check_frame(subject: Subject) -> Iterator[Finding]:
+    """Check the frame against the table's, or the one that the user says is equal."""
+    channel, topic = subject.channel, subject.topic
+    if not channel.frames:
+        return
+    wanted = subject.limits.frames.get(topic, channel.frames[channel.topics.index(topic)])
+    for found in sorted({sample.frame for sample in subject.samples} - {wanted}):
+        yield subject.finding(
+            'wrong_frame',
+            'header.frame_id',
+            f"is '{found}'",
+            f"'{wanted}'",
+            f"let the driver report in {wanted}; where the axes of '{found}' are the same, say "
+            f"so with frames '{topic}={found}'",
+        )
+
+
+def check_shape(subject: Subject) -> Iterator[Finding]:
+    """Check joint names and lengths; one finding per field, and none on numbers after these."""
+    joints = subject.channel.message_type == JOINT_TYPE
+    if joints:
+        yield from _check_names(subject)
+    for field in observed_fields(subject.channel):
+        for sample in subject.samples:
+            size = len(sample.names) if joints else field.size
+            if sample.values[field.path].size != size:
+                yield _wrong_length(subject, field, sample.values[field.path].size, size)
+                break
+
+
+def check_finite(subject: Subject) -> Iterator[Finding]:
+    """Check that every number is finite."""
+    for field in observed_fields(subject.channel):
+        broken = ~np.isfinite(subject.stack(field.path))
+        if broken.any():
+            index = int(np.flatnonzero(broken.any(axis=0))[0])
+            count = int(broken.any(axis=1).sum())
+            yield subject.finding(
+                'not_finite',
+                number_name(subject, field.path, index),
+                f'is NaN or infinite in {count} of {len(broken)} messages',
+                'a finite number',
+                'let the driver leave out samples that it could not measure',
+            )
+
+
+def number_name(subject: Subject, path: str, index: int) -> str:
+    """Return the name of one number of a field, such as 'position[lf_hip]'."""
+    if subject.channel.message_type == JOINT_TYPE:
+        return f'{path}[{JOINTS[index]}]'
+    return f'{path}[{index}]'
+
+
+def _check_names(subject: Subject) -> Iterator[Finding]:
+    for names in dict.fromkeys(sample.names for sample in subject.samples):
+        try:
+            joint_order(names)
+        except ValueError as error:
+            yield subject.finding(
+                'wrong_names',
+                'name',
+                str(error).removeprefix('name ').partition(', expected')[0],
+                f'{JOINTS[0]}, {JOINTS[1]}, … {JOINTS[-1]}, in any order',
+                "name the driver's joints as the URDF does; one prefix for all of them is fine",
+            )
+            return
+
+
+def _wrong_length(subject: Subject, field: Field, found: int, wanted: int) -> Finding:
+    return subject.finding(
+        'wrong_length',
+        field.path,
+        f'has {found} numbers',
+        f'{wanted}',
+        'let the driver fill the field for every name'
+        if subject.channel.message_type == JOINT_TYPE
+        else f'let the driver fill all {wanted} numbers',
+    )

@@ -1,0 +1,128 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Whether a topic keeps time: stamps that advance, at the rate, in step with the others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from hexapod_sim.robot import CONTROL_PERIOD_NS
+from numpy.typing import NDArray
+
+from hexapod_agent.contract.evidence import Sample
+from hexapod_agent.contract.finding import Finding
+from hexapod_agent.contract.subject import Subject
+
+_STAMP = 'header.stamp'
+_RATE_HZ = 1e9 / CONTROL_PERIOD_NS
+_STAMPING = 'let the driver stamp each sample with the time of its measurement, on the ROS clock'
+
+Clock = tuple[NDArray[np.int64], NDArray[np.int64]]
+"""Arrivals and stamps of one channel [ns]."""
+
+
+def check_stamps(subject: Subject) -> Iterator[Finding]:
+    """Check that stamps are set and strictly increasing."""
+    stamps = stamps_of(subject.samples)
+    if not stamps.any():
+        if len(stamps) > 1:
+            yield subject.finding(
+                'stale_stamps', _STAMP, 'is never set', 'the time of measurement', _STAMPING
+            )
+        return
+    steps = np.diff(stamps)
+    if len(steps) and not steps.any():
+        yield subject.finding(
+            'stale_stamps', _STAMP, 'stands still', 'a later one in every message', _STAMPING
+        )
+    elif (steps <= 0).any():
+        back, same = int((steps < 0).sum()), int((steps == 0).sum())
+        yield subject.finding(
+            'stale_stamps',
+            _STAMP,
+            f'jumps back {back} times and repeats {same} times in {len(stamps)} messages',
+            'a later one in every message',
+            f'{_STAMPING}; see that one driver alone publishes the topic',
+        )
+
+
+def check_lag(subject: Subject, clocks: list[Clock]) -> Iterator[Finding]:
+    """Check that the stamps are as late as those of the other channels."""
+    lag = median_lag_s(subject.samples, clocks)
+    longest = subject.limits.age(subject.topic)
+    if abs(lag) <= longest:
+        return
+    side = 'behind' if lag > 0.0 else 'ahead of'
+    yield subject.finding(
+        'stale_stamps',
+        _STAMP,
+        f'is {abs(lag):.3f} s {side} the other channels',
+        f'at most {longest:g} s',
+        'synchronise the clocks (NTP, PTP), or shorten the delay of the driver'
+        if lag > 0.0
+        else 'synchronise the clocks (NTP, PTP)',
+    )
+
+
+def check_rate(subject: Subject) -> Iterator[Finding]:
+    """Check the time between samples against the control period."""
+    gaps = gaps_s(subject.samples)
+    if not len(gaps):
+        return
+    rate, usual = 1.0 / gaps.mean(), float(np.median(gaps))
+    longest = subject.limits.age(subject.topic)
+    if usual > longest:
+        yield subject.finding(
+            'slow',
+            'rate',
+            f'is {rate:.1f} Hz',
+            f'{_RATE_HZ:g} Hz, and not under {1.0 / longest:g} Hz',
+            "raise the driver's rate",
+        )
+    elif rate < subject.limits.least_rate * _RATE_HZ:
+        yield subject.finding(
+            'slow',
+            'rate',
+            f'is {rate:.1f} Hz',
+            f'{_RATE_HZ:g} Hz, one sample per control period',
+            "raise the driver's rate; the agent sees older values than it was trained with",
+            'warning',
+        )
+
+
+def stamps_of(samples: tuple[Sample, ...]) -> NDArray[np.int64]:
+    """Return the stamps [ns]."""
+    return np.array([sample.stamp_ns for sample in samples], dtype=np.int64)
+
+
+def clock_of(samples: tuple[Sample, ...]) -> Clock:
+    """Return the arrivals and stamps of a channel."""
+    arrivals = np.array([sample.arrival_ns for sample in samples], dtype=np.int64)
+    return arrivals, stamps_of(samples)
+
+
+def gaps_s(samples: tuple[Sample, ...]) -> NDArray[np.float64]:
+    """Return the times between samples [s], by stamp, or by arrival where stamps are no clock.
+
+    Stamps tell the rate of a driver also in simulated time and on a machine under load.
+    """
+    arrivals, stamps = clock_of(samples)
+    steps = np.diff(stamps)
+    return (steps if (steps > 0).all() else np.diff(arrivals)) * 1e-9
+
+
+def median_lag_s(samples: tuple[Sample, ...], clocks: list[Clock]) -> float:
+    """Return how far the stamps lie behind the other channels' when they arrive [s].
+
+    The time at an arrival is the median of the channels' newest stamps then. It needs no common
+    clock with the drivers: simulated time, a bag and wall time are alike.
+    """
+    arrivals, stamps = clock_of(samples)
+    newest = np.full((len(clocks), len(arrivals)), np.nan)
+    for row, (came, stamped) in zip(newest, clocks, strict=True):
+        index = np.searchsorted(came, arrivals, side='right') - 1
+        row[:] = np.where(index < 0, np.nan, (stamped[index] - stamps[0]) * 1e-9)
+    now = np.nanmedian(newest, axis=0)
+    return float(np.median(now - (stamps - stamps[0]) * 1e-9))

@@ -1,0 +1,102 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Whether numbers are in our units, and within the scale that the agent normalises them by."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+from hexapod_sim.robot import GRAVITY
+from numpy.typing import NDArray
+
+from hexapod_agent.contract.fields import Field, observed_fields
+from hexapod_agent.contract.finding import Finding
+from hexapod_agent.contract.subject import Subject
+
+# What drivers publish instead, by our unit: name, and how many of it make one of ours.
+OTHER_UNITS: dict[str, tuple[tuple[str, float], ...]] = {
+    'rad': (('degrees', 180.0 / math.pi),),
+    'rad/s': (('degrees/s', 180.0 / math.pi), ('rpm', 30.0 / math.pi)),
+    'N·m': (('kgf·cm', 100.0 / GRAVITY), ('N·cm', 100.0), ('N·mm', 1000.0)),
+    'm/s': (('cm/s', 100.0), ('mm/s', 1000.0)),
+    'm': (('cm', 100.0), ('mm', 1000.0)),
+    'm/s²': (('g', 1.0 / GRAVITY), ('cm/s²', 100.0), ('mg', 1000.0 / GRAVITY)),
+    'N': (('kgf', 1.0 / GRAVITY), ('gf', 1000.0 / GRAVITY), ('mN', 1000.0)),
+    '1': (('percent', 100.0),),
+}
+# A few wild numbers do not make another unit.
+_USUAL_PERCENTILE = 95
+# Below this share of the scale nothing tells one unit from another.
+_AT_REST = 0.01
+
+
+def check_units(subject: Subject) -> Iterator[Finding]:
+    """Check each observed field's magnitudes."""
+    for field in observed_fields(subject.channel):
+        magnitudes = np.abs(subject.stack(field.path))
+        usual = float(np.percentile(magnitudes, _USUAL_PERCENTILE))
+        if usual > field.limit:
+            yield _wrong_unit(subject, field, usual)
+        else:
+            yield from _check_scale(subject, field, magnitudes)
+
+
+def other_unit(unit: str, found: float, most: float, least: float = 0.0) -> tuple[str, float]:
+    """Return the unit in which a magnitude is plausible, and how many of it make one of ours.
+
+    Returns:
+        ('', 1.0) if it is so in none that drivers use.
+    """
+    for name, factor in OTHER_UNITS[unit]:
+        if least <= found / factor <= most:
+            return name, factor
+    return '', 1.0
+
+
+def conversion(unit: str, name: str, factor: float) -> str:
+    """Return the cure for a driver that publishes in another unit."""
+    if not name:
+        return f'let the driver publish {unit}'
+    return f'let the driver publish {unit}: divide by {factor:.4g}'
+
+
+def _wrong_unit(subject: Subject, field: Field, usual: float) -> Finding:
+    name, factor = other_unit(field.unit, usual, field.limit)
+    guess = f', which looks like {name}' if name else ''
+    return subject.finding(
+        'wrong_unit',
+        field.path,
+        f'reaches {usual:.4g}{guess}',
+        f'{field.unit} up to {field.limit:.4g}',
+        conversion(field.unit, name, factor),
+    )
+
+
+def _check_scale(
+    subject: Subject, field: Field, magnitudes: NDArray[np.float64]
+) -> Iterator[Finding]:
+    """Warn of numbers that are clipped, and say where the unit cannot be seen."""
+    values = subject.stack(field.path)
+    clipped = float((np.abs(values - field.center) > field.scale).mean())
+    if clipped > subject.limits.clipped_share:
+        span = f'{field.center:g} ± {field.scale:g}' if field.center else f'±{field.scale:g}'
+        yield subject.finding(
+            'clipped',
+            field.path,
+            f'lies beyond the scale for {100.0 * clipped:.0f} % of the numbers',
+            f'{span} {field.unit}',
+            'see whether the robot moves as in training; the agent sees these numbers clipped',
+            'warning',
+        )
+    if field.unit in ('rad/s', 'm/s') and magnitudes.max() < _AT_REST * field.scale:
+        yield subject.finding(
+            'at_rest',
+            field.path,
+            'is at rest',
+            f'movement, to tell whether it is in {field.unit}',
+            'check again while the robot walks',
+            'note',
+        )

@@ -1,0 +1,93 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""A topic under watch: sound messages pass, broken ones are named, some faults outlast them."""
+
+from __future__ import annotations
+
+from array import array
+
+import numpy as np
+import pytest
+from geometry_msgs.msg import Quaternion, Vector3
+from hexapod_agent.contract.watch import MessageWatch
+from hexapod_agent.observation import CHANNELS
+from hexapod_sim.messages import SENSOR_TOPICS
+from hexapod_sim.robot import GRAVITY, JOINTS
+from hexapod_sim.sensors import read
+from hexapod_sim.simulation import Simulation
+from sensor_msgs.msg import Imu, JointState
+
+TABLE = {topic: channel for channel in CHANNELS for topic in channel.topics}
+
+
+def imu(z: float = GRAVITY, frame: str = 'imu_link', w: float = 1.0) -> Imu:
+    message = Imu(orientation=Quaternion(w=w), linear_acceleration=Vector3(z=z))
+    message.header.frame_id = frame
+    return message
+
+
+def watch(topic: str) -> MessageWatch:
+    return MessageWatch(TABLE[topic], topic)
+
+
+@pytest.mark.parametrize('sensor', SENSOR_TOPICS, ids=lambda sensor: sensor.name)
+def test_what_the_sim_publishes_passes(sensor) -> None:
+    simulation = Simulation()
+    simulation.reset(0.0)
+    message = sensor.new()
+    sensor.fill(message, read(simulation, sensor.readings))
+    assert watch(sensor.name).check(message) is None
+
+
+@pytest.mark.parametrize(
+    ('message', 'kind'),
+    [(imu(frame='x'), 'wrong_frame'), (imu(w=0.5), 'bad_quaternion'), (imu(), None)],
+)
+def test_a_broken_message_is_named(message: Imu, kind: str | None) -> None:
+    found = watch('imu/data').check(message)
+    assert (found.kind if found else None) == kind
+
+
+@pytest.mark.parametrize(
+    ('change', 'kind'),
+    [
+        ({'name': ['a'] * 18}, 'wrong_names'),
+        ({'position': array('d', [0.0] * 17)}, 'wrong_length'),
+        ({'position': array('d', [np.nan] * 18)}, 'not_finite'),
+        ({'position': array('d', [14.0] * 18)}, 'wrong_unit'),
+    ],
+)
+def test_broken_joint_states_are_named(change: dict, kind: str) -> None:
+    fields = {
+        'name': list(JOINTS),
+        'position': array('d', [0.1] * 18),
+        'velocity': array('d', [0.1] * 18),
+    }
+    found = watch('joint_states').check(JointState(**(fields | change)))
+    assert found is not None
+    assert found.kind == kind
+
+
+def test_a_wrong_unit_outlasts_the_message_by_a_second() -> None:
+    watched = watch('imu/data_raw')
+    fast, slow = imu(), imu()
+    fast.angular_velocity.x = 40.0
+    assert watched.check(fast).kind == 'wrong_unit'
+    for _ in range(39):
+        assert watched.check(slow).kind == 'wrong_unit'
+    assert watched.check(slow) is None
+
+
+def test_flipped_gravity_is_named_within_half_a_second_and_a_jolt_is_not() -> None:
+    watched = watch('imu/data')
+    assert watched.check(imu(-30.0)) is None
+    for _ in range(60):
+        assert watched.check(imu()) is None
+    found = [watched.check(imu(-GRAVITY)) for _ in range(20)]
+    assert found[0] is None
+    assert found[-1] is not None
+    assert found[-1].kind == 'flipped_gravity'
+    for _ in range(200):
+        last = watched.check(imu())
+    assert last is None
