@@ -106,6 +106,23 @@ def command_from_action(
     return Command(**values)
 
 
+def action_from_command(
+    command: Command, reading: str = 'D1', ranges: ActionRanges = DEFAULT_RANGES
+) -> np.ndarray:
+    """Return the action (..., 30), float32, that a command was made of.
+
+    The inverse of `command_from_action`, up to the rounding of both; where a field has no width,
+    zero. Arguments as there.
+    """
+    columns = []
+    for name in READINGS[reading]:
+        centre, half_width = getattr(ranges, name)
+        deviation = getattr(command, name) - centre
+        columns.append(deviation / half_width if half_width else np.zeros_like(deviation))
+    action = np.stack(columns, axis=-1)
+    return action.reshape(*action.shape[:-2], ACTION_SIZE).astype(np.float32)
+
+
 def joint_targets(command: Command, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Return the joint angles (..., 18) [rad] of oscillator states x and y, each (..., 6)."""
     targets = np.empty((*x.shape, 3))

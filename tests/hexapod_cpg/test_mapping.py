@@ -13,6 +13,7 @@ from hexapod_cpg.mapping import (
     READINGS,
     ActionRanges,
     Command,
+    action_from_command,
     command_from_action,
     joint_targets,
 )
@@ -177,3 +178,17 @@ def test_unknown_reading_is_named() -> None:
 def test_action_of_another_shape_is_refused(shape: tuple[int, ...]) -> None:
     with pytest.raises(ValueError, match=r'action: expected shape \(\.\.\., 30\), got'):
         command_from_action(np.zeros(shape))
+
+
+@pytest.mark.parametrize('reading', READINGS)
+def test_an_action_comes_back_from_its_command(reading: str) -> None:
+    actions = np.random.default_rng(4).uniform(-1, 1, (4, 3, ACTION_SIZE)).astype(np.float32)
+    back = action_from_command(command_from_action(actions, reading), reading)
+    assert back.dtype == np.float32
+    np.testing.assert_allclose(back, actions, rtol=0, atol=1e-7)
+
+
+def test_a_field_without_width_comes_back_as_zero() -> None:
+    ranges = ActionRanges(hip_gain=(0.25, 0.0))
+    back = action_from_command(command_from_action(np.ones(30), 'D1', ranges), 'D1', ranges)
+    np.testing.assert_array_equal(back.reshape(6, 5), np.tile([0, 1, 1, 1, 1], (6, 1)))

@@ -79,17 +79,22 @@ class BagFile:
         Raises:
             BagError: there is none, so the bag is not of a run.
         """
+        metadata = self.metadata()
+        if 'run_id' not in metadata:
+            raise BagError(
+                f'bag {self.path}: foreign, no metadata record {RUN_RECORD} with a run_id, '
+                'expected the bag of a run'
+            )
+        return metadata
+
+    def metadata(self) -> dict[str, str]:
+        """Return what the bag says of its run; nothing where it is not of a run."""
         metadata: dict[str, str] = {}
         for file in self.files:
             with self._reading(file) as reader:
                 for record in reader.iter_metadata():
                     if record.name == RUN_RECORD:
                         metadata.update(record.metadata)
-        if 'run_id' not in metadata:
-            raise BagError(
-                f'bag {self.path}: foreign, no metadata record {RUN_RECORD} with a run_id, '
-                'expected the bag of a run'
-            )
         return metadata
 
     def topic(self, name: str) -> str:

@@ -1,0 +1,172 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Scores recorded episodes with another reward: the task's own terms on what the bag holds.
+
+The poses of `odom` and the distances of `line_offset` are the numbers that the task judged, so an
+unchanged reward gives the recorded one to the last bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import yaml
+from hexapod_agent.config import AgentConfig
+from hexapod_sim.simulation import roll_pitch_yaw
+from hexapod_sim.task import DIVERGED, Outcome, TaskConfig, diverged, judge, line_at
+
+from hexapod_doe.bags.bag_file import BagFile
+from hexapod_doe.errors import BagError
+from hexapod_doe.replays.episodes import (
+    LINE_OFFSET,
+    STEP_OUTCOME,
+    Series,
+    Span,
+    recorded_episodes,
+    series_of_type,
+)
+
+
+@dataclass(frozen=True)
+class Rescored:
+    """One recorded episode under another reward.
+
+    Attributes:
+        episode: its number in the run.
+        outcomes: of each control period, until the episode ends by the new task.
+        recorded: rewards of the periods as the bag has them; empty where it has none.
+    """
+
+    episode: int
+    outcomes: tuple[Outcome, ...]
+    recorded: tuple[float, ...]
+
+    @property
+    def episode_return(self) -> float:
+        """Sum of the rewards."""
+        return sum(outcome.reward for outcome in self.outcomes)
+
+    @property
+    def recorded_return(self) -> float | None:
+        """Sum of the recorded rewards; None where there are none."""
+        return sum(self.recorded) if self.recorded else None
+
+    @property
+    def terms(self) -> dict[str, float]:
+        """Sums of the reward terms."""
+        names = self.outcomes[0].terms if self.outcomes else ()
+        return {name: sum(o.terms[name] for o in self.outcomes) for name in names}
+
+    @property
+    def equal(self) -> int:
+        """Periods whose reward is the recorded one to the last bit."""
+        pairs = zip(self.outcomes, self.recorded, strict=False)
+        return sum(outcome.reward.hex() == reward.hex() for outcome, reward in pairs)
+
+    @property
+    def cause(self) -> str:
+        """Why the episode ends by the new task; empty where the recording ends before it."""
+        return self.outcomes[-1].cause if self.outcomes else ''
+
+
+def recorded_config(bag: BagFile) -> AgentConfig:
+    """Return a configuration with the task that a run was made with, if the bag tells.
+
+    The rest is article.yaml's: an old bag's learner may know keys that this version does not.
+
+    Raises:
+        ConfigError: the task in the bag has an unknown key or value.
+    """
+    config = yaml.safe_load(bag.metadata().get('config', '')) or {}
+    return AgentConfig.from_mapping({'task': config.get('task', {})}, f'bag {bag.path}')
+
+
+def rescore(bag: BagFile, task: TaskConfig) -> Iterator[Rescored]:
+    """Score each episode of which the bag holds `odom`.
+
+    The distance from the line is that of `line_offset`; a task that moves the line differently
+    shifts it by as much. A bag without this topic has its line where the task puts it.
+
+    Raises:
+        BagError: the bag has no odometry, or a sample of a topic is missing.
+    """
+    topics = _Topics(bag)
+    before = recorded_config(bag).task
+    for span in recorded_episodes(bag, topics.odom):
+        yield _rescore_episode(topics.samples(span), span, before, task)
+
+
+@dataclass(frozen=True)
+class _Sample:
+    """What the bag holds of the end of one control period."""
+
+    pose: tuple[float, ...]
+    offset: float | None
+    outcome: Any
+
+
+class _Topics:
+    """The topics that a score is made of."""
+
+    def __init__(self, bag: BagFile) -> None:
+        self._bag = bag
+        self.odom = Series(bag, 'odom')
+        self._others = [series_of_type(bag, kind) for kind in (LINE_OFFSET, STEP_OUTCOME)]
+
+    def samples(self, span: Span) -> list[_Sample]:
+        """Return the samples of an episode.
+
+        Raises:
+            BagError: a topic lacks one.
+        """
+        stamps = self.odom.within(span)
+        for series in self._others:
+            if series is not None and series.within(span) != stamps:
+                raise BagError(
+                    f'bag {self._bag.path}: episode {span.episode} has other stamps on '
+                    f'{series.topic} than on {self.odom.topic}, expected a sample of each in '
+                    'every control period'
+                )
+        offsets, outcomes = self._others
+        return [
+            _Sample(
+                _pose(self.odom.at(stamp)),
+                offsets.at(stamp).offset if offsets else None,
+                outcomes.at(stamp) if outcomes else None,
+            )
+            for stamp in stamps
+        ]
+
+
+def _rescore_episode(
+    samples: list[_Sample], span: Span, before: TaskConfig, task: TaskConfig
+) -> Rescored:
+    outcomes: list[Outcome] = []
+    for step, (last, sample) in enumerate(pairwise(samples), start=1):
+        if sample.outcome and sample.outcome.cause == DIVERGED:
+            outcome = diverged(step)
+        else:
+            offset = _offset(sample, step, before, task)
+            outcome = judge(step, sample.pose, last.pose[0], offset, task)
+        outcomes.append(outcome)
+        if outcome.terminated or outcome.truncated:
+            break
+    recorded = tuple(sample.outcome.reward for sample in samples[1:] if sample.outcome)
+    return Rescored(span.episode, tuple(outcomes), recorded)
+
+
+def _offset(sample: _Sample, step: int, before: TaskConfig, task: TaskConfig) -> float:
+    line = line_at(step, task)
+    if sample.offset is None:
+        return sample.pose[1] - line
+    return sample.offset + (line_at(step, before) - line)
+
+
+def _pose(message: Any) -> tuple[float, ...]:
+    """Return x, y, z [m] and roll, pitch, yaw [rad] of an odometry message."""
+    position, q = message.pose.pose.position, message.pose.pose.orientation
+    return position.x, position.y, position.z, *roll_pitch_yaw(q.x, q.y, q.z, q.w)

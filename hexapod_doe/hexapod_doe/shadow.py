@@ -1,0 +1,85 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Command line `shadow`: an agent on recorded sensors, its actions beside the recorded ones."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from hexapod_agent.checkpoint import CheckpointError, load
+from hexapod_agent.policies import trained_policy
+from rich.console import Console
+from rich.table import Table
+
+from hexapod_doe.bags.bag_file import BagFile
+from hexapod_doe.errors import BagError
+from hexapod_doe.replays.episodes import episode_of, recorded_episodes
+from hexapod_doe.replays.shadowing import Comparison, Difference, Recorded, shadow
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Compare, print a table, and end with status 1 unless all is equal to the last bit."""
+    parser = _parser()
+    options = parser.parse_args(arguments)
+    try:
+        found = _compare(options)
+    except (BagError, CheckpointError) as error:
+        parser.error(str(error))
+    console = Console()
+    for comparison in found:
+        console.print(_table(comparison))
+    if options.json:
+        text = json.dumps([asdict(comparison) for comparison in found], indent=2)
+        options.json.write_text(f'{text}\n', encoding='utf-8')
+    sys.exit(any(comparison.equal < comparison.periods for comparison in found))
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog='shadow', description=__doc__)
+    parser.add_argument('bag', type=Path, help='directory of a bag with all topics of an episode')
+    parser.add_argument('--checkpoint', required=True, help='agent to show it to: a file of train')
+    parser.add_argument('--episode', type=int, help='number of one episode; default: all recorded')
+    parser.add_argument(
+        '--json', type=Path, metavar='FILE', help='write the figures to a file as well'
+    )
+    return parser
+
+
+def _compare(options: argparse.Namespace) -> list[Comparison]:
+    bag, trainer = BagFile(options.bag), load(options.checkpoint)
+    policy = trained_policy(trainer.agent)
+    recorded = Recorded(bag, trainer.spec)
+    spans = recorded_episodes(bag, recorded.commands)
+    if options.episode is not None:
+        spans = [episode_of(options.episode, spans, bag)]
+    return [shadow(recorded, span, policy, trainer.config.cpg) for span in spans]
+
+
+def _table(row: Comparison) -> Table:
+    table = Table('figure', 'value', title=f'episode {row.episode}', title_justify='left')
+    table.add_row('periods compared', str(row.periods))
+    table.add_row('  equal to the last bit', str(row.equal))
+    table.add_row('  with a sensor older than the command', str(row.aged))
+    table.add_row('first difference', _told(row.first))
+    table.add_row('largest difference', _told(row.largest))
+    return table
+
+
+def _told(difference: Difference | None) -> str:
+    if difference is None:
+        return 'none'
+    return (
+        f'{difference.size:.2g} in {difference.field}: {difference.shadow:.6g} '
+        f'instead of {difference.recorded:.6g}\n'
+        f'in period {difference.period}, at {difference.stamp_ns * 1e-9:.3f} s'
+    )
+
+
+if __name__ == '__main__':
+    main()
