@@ -19,7 +19,8 @@ from rclpy.action import CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
 
-from hexapod_agent import checkpoint
+from hexapod_agent import checkpoint, run_checkpoint
+from hexapod_agent.checkpoint import CheckpointError
 from hexapod_agent.config import AgentConfig
 from hexapod_agent.graph_run import GraphRun
 from hexapod_agent.observation import ObservationSpec, parse_observations
@@ -52,7 +53,7 @@ class AgentNode(Node):
         self.command_publisher = self.create_publisher(CpgCommand, 'cpg/command', LOCK_STEP)
         self.result_publisher = self.create_publisher(EpisodeResult, 'episode_result', LOCK_STEP)
         self.peers = Peers(self, self.timeout_s)
-        self._make_trainer = make_trainer
+        self.make_trainer = make_trainer
         self._run: GraphRun | None = None
         self._reserved = False
         self._last_error = ''
@@ -98,7 +99,17 @@ class AgentNode(Node):
     def _untrained(self, goal: TrainRun.Goal) -> tuple[ObservationSpec, AgentConfig, Trainer]:
         spec = ObservationSpec(goal.observations)
         config = AgentConfig.load(goal.config or self.get_parameter('config').value)
-        return spec, config, self._make_trainer(spec, config, goal.seed)
+        return spec, config, self._resumed(goal, spec, config)
+
+    def _resumed(self, goal: TrainRun.Goal, spec: ObservationSpec, config: AgentConfig) -> Trainer:
+        """Return the trainer of the run's checkpoint, or one that begins."""
+        trainer = None
+        if goal.resume and goal.bag:
+            try:
+                trainer = run_checkpoint.resumed(goal.bag, spec, config, goal.seed, goal.episodes)
+            except CheckpointError as error:
+                self.get_logger().warning(f'run {goal.run_id} begins anew: {error}')
+        return trainer or self.make_trainer(spec, config, goal.seed)
 
     def _health(self) -> Health:
         if self._run is not None:

@@ -18,6 +18,7 @@ from hexapod_cpg.messages import command_to_message
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import CpgCommand, EpisodeResult, StepOutcome
 from hexapod_node.conditions import until_true
+from hexapod_node.coroutines import STEADY
 from hexapod_node.lock_step import LockStep
 from hexapod_node.matching import unheard
 from hexapod_node.stamps import time_message
@@ -26,6 +27,7 @@ from hexapod_sim.robot import CONTROL_PERIOD_NS
 from hexapod_sim.task import episode_seed
 from numpy.typing import NDArray
 
+from hexapod_agent import run_checkpoint
 from hexapod_agent.checkpoint import save
 from hexapod_agent.config import AgentConfig
 from hexapod_agent.event_log import EventLog
@@ -41,6 +43,7 @@ if TYPE_CHECKING:
 
     from hexapod_agent.agent_node import AgentNode
 
+_LIFE_S = 1.0
 _OUTCOME = 'step_outcome'
 # What a sampled episode holds beside every sensor topic.
 _PROTOCOL_TOPICS = (_OUTCOME, 'odom', 'cpg/command', 'joint_trajectory', 'clock')
@@ -67,6 +70,9 @@ class GraphRun:
         self._events: EventLog | None = None
         self._command = CpgCommand()
         self._episode = 0
+        self._periods = 0
+        self._last_ns = 0
+        """End of the episodes that were carried over; simulated time goes on from there."""
         self._action = np.zeros(ACTION_SIZE, dtype=np.float32)
         # The treatment: these topics and no other sensor.
         topics = {
@@ -78,8 +84,11 @@ class GraphRun:
             node, topics | {_OUTCOME: StepOutcome}, CONTROL_PERIOD_NS, node.timeout_s
         )
 
+        self._life = node.create_timer(_LIFE_S, self._give_sign_of_life, clock=STEADY)
+
     def destroy(self) -> None:
         """Unsubscribe from every topic of the run, and close its curves."""
+        self._node.destroy_timer(self._life)
         self._lock_step.destroy()
         if self._events is not None:
             self._events.close()
@@ -94,17 +103,13 @@ class GraphRun:
         peers, goal = self._node.peers, self._goal
         await peers.configure('sim', 'task', asdict(self._config.task))
         await peers.configure('cpg', 'cpg', asdict(self._config.cpg.hopf))
-        if goal.bag:
-            await peers.greet_recorder()
-            await peers.start_recording(
-                goal.run_id, goal.bag, self._recorded_topics(), self._metadata()
-            )
-            self._events = EventLog(Path(f'{goal.bag}.tensorboard'))
-        for self._episode in range(goal.episodes):
+        first = await self._open_bag() if goal.bag else 0
+        for self._episode in range(first, goal.episodes):
             if self._goal_handle.is_cancel_requested:
                 self._goal_handle.canceled()
-                return self._result('canceled')
+                return TrainRun.Result(message='canceled', episodes=self._episode)
             await self._run_episode()
+            await self._keep()
         checkpoint, bag = goal.checkpoint, ''
         if goal.bag:
             if isinstance(self._agent, Trainer):
@@ -113,8 +118,40 @@ class GraphRun:
             # A name, not a path: bags are moved, and their checkpoints with them.
             found = {'checkpoint': Path(checkpoint).name}
             bag = await peers.finish_recording(goal.episodes, found)
+            run_checkpoint.forget(goal.bag)
         self._goal_handle.succeed()
-        return self._result('', checkpoint, bag)
+        return TrainRun.Result(
+            final_average_reward=self._agent.summary.average_return,
+            episodes=self._episode + 1,
+            checkpoint=checkpoint,
+            bag=bag,
+        )
+
+    async def _open_bag(self) -> int:
+        """Have the bag opened, with the episodes before the checkpoint; return their number."""
+        peers, goal = self._node.peers, self._goal
+        await peers.greet_recorder()
+        done = self._agent.episode if isinstance(self._agent, Trainer) else 0
+        kept, self._last_ns = await peers.start_recording(
+            goal.run_id, goal.bag, self._recorded_topics(), self._metadata(), goal.resume, done
+        )
+        if kept != done:
+            self._node.get_logger().warning(
+                f'run {goal.run_id} begins anew: no recording holds the {done} episodes before '
+                'its checkpoint'
+            )
+            self._agent = self._node.make_trainer(self._spec, self._config, goal.seed)
+        self._events = EventLog(Path(f'{goal.bag}.tensorboard'), kept)
+        return kept
+
+    async def _keep(self) -> None:
+        """Take a checkpoint if one is due, after its episodes' results are on the disk."""
+        done, every = self._episode + 1, self._config.training.checkpoint_every
+        if not self._goal.bag or done % every or done == self._goal.episodes:
+            return
+        if isinstance(self._agent, Trainer):
+            await self._node.peers.secure_recording(done)
+            run_checkpoint.keep(self._goal.bag, self._agent)
 
     async def _run_episode(self) -> None:
         """Play one episode, and record all of it if it is a sampled one."""
@@ -130,7 +167,7 @@ class GraphRun:
         listeners = self._listeners(sampled)
         await self._until_heard(listeners)
         seed = episode_seed(self._goal.seed, episode)
-        start_ns = await peers.begin_episode(seed, listeners)
+        start_ns = await peers.begin_episode(seed, listeners, self._last_ns + CONTROL_PERIOD_NS)
         self._lock_step.start(start_ns)
         last_ns = await self._step_until_end(start_ns)
         if sampled:
@@ -151,6 +188,7 @@ class GraphRun:
             self._publish_command(stamp_ns)
             agent.learn()  # while the pattern generator and the sim are at work
             stamp_ns += CONTROL_PERIOD_NS
+            self._periods += 1
 
     def _observe(self, messages: Mapping[str, Any]) -> NDArray[Any]:
         readings: dict[str, NDArray[Any]] = {}
@@ -233,16 +271,16 @@ class GraphRun:
         self._goal_handle.publish_feedback(
             TrainRun.Feedback(
                 episode=self._episode,
+                ended=True,
                 episode_return=summary.episode_return,
                 average_return=summary.average_return,
+                periods=self._periods,
             )
         )
 
-    def _result(self, message: str, checkpoint: str = '', bag: str = '') -> TrainRun.Result:
-        return TrainRun.Result(
-            final_average_reward=self._agent.summary.average_return,
-            episodes=self._episode + 1,
-            checkpoint=checkpoint,
-            bag=bag,
-            message=message,
-        )
+    def _give_sign_of_life(self) -> None:
+        """Tell whoever gave the goal that the run goes on."""
+        if self._goal_handle.is_active:
+            self._goal_handle.publish_feedback(
+                TrainRun.Feedback(episode=self._episode, periods=self._periods)
+            )

@@ -14,9 +14,11 @@ from hexapod_interfaces.srv import (
     FinishRecording,
     RecordEpisode,
     ResetEpisode,
+    SecureRecording,
     StartRecording,
 )
 from hexapod_node.calls import ServiceUnavailableError, call
+from hexapod_node.conditions import until_true
 from hexapod_node.coroutines import sleep
 from hexapod_node.parameters import to_messages
 from hexapod_node.stamps import time_message, to_nanoseconds
@@ -44,6 +46,7 @@ class Peers:
         }
         self._start = node.create_client(StartRecording, 'recorder/start')
         self._episode = node.create_client(RecordEpisode, 'recorder/episode')
+        self._secure = node.create_client(SecureRecording, 'recorder/secure')
         self._finish = node.create_client(FinishRecording, 'recorder/finish')
         # The last clients, and the first to be used: peers get to know an agent's clients in the
         # order of their making, so one answer from a peer tells that its other answers arrive.
@@ -65,10 +68,13 @@ class Peers:
         """Wait until the recorder's answers arrive."""
         await self._repeat_until_answered(self._greet, ListParameters.Request())
 
-    async def begin_episode(self, seed: int, subscriptions: Mapping[str, int]) -> int:
+    async def begin_episode(
+        self, seed: int, subscriptions: Mapping[str, int], not_before_ns: int = 0
+    ) -> int:
         """Reset sim and pattern generator; return the stamp of the first period, ns."""
         request = ResetEpisode.Request(
             seed=seed,
+            start=time_message(not_before_ns),
             topics=list(subscriptions),
             subscriptions=list(subscriptions.values()),
         )
@@ -78,13 +84,33 @@ class Peers:
         return to_nanoseconds(response.start)
 
     async def start_recording(
-        self, run_id: str, bag: str, topics: Sequence[str], metadata: Mapping[str, str]
-    ) -> None:
-        """Open the run's bag."""
+        self,
+        run_id: str,
+        bag: str,
+        topics: Sequence[str],
+        metadata: Mapping[str, str],
+        takeover: bool = False,
+        keep: int = 0,
+    ) -> tuple[int, int]:
+        """Open the run's bag, with so many episodes of an earlier recording or with none.
+
+        Returns:
+            How many were kept, and the stamp at their end, ns.
+        """
         request = StartRecording.Request(
-            run_id=run_id, bag=bag, topics=list(topics), metadata=key_values(metadata)
+            run_id=run_id,
+            bag=bag,
+            topics=list(topics),
+            metadata=key_values(metadata),
+            takeover=takeover,
+            keep=keep,
         )
-        await self._ask(self._start, request)
+        response = await self._ask_the_disk(self._start, request)
+        return int(response.kept), to_nanoseconds(response.last)
+
+    async def secure_recording(self, episodes: int) -> None:
+        """Wait until the results of the first episodes are on the disk."""
+        await self._ask_the_disk(self._secure, SecureRecording.Request(episodes=episodes))
 
     async def record_episode(self, episode: int, enable: bool, last_ns: int = 0) -> None:
         """Begin or end recording every topic."""
@@ -94,7 +120,7 @@ class Peers:
     async def finish_recording(self, episodes: int, metadata: Mapping[str, str]) -> str:
         """Close the run's bag and return where it is."""
         request = FinishRecording.Request(episodes=episodes, metadata=key_values(metadata))
-        response = await self._ask(self._finish, request)
+        response = await self._ask_the_disk(self._finish, request)
         return str(response.bag)
 
     async def _reset_when_matched(self, peer: str, request: ResetEpisode.Request) -> Any:
@@ -122,11 +148,27 @@ class Peers:
                         f'a running node'
                     ) from error
 
+    async def _ask_the_disk(self, client: Any, request: Any) -> Any:
+        """Ask for what takes longer the larger a bag is; wait while the server is there."""
+        answer = client.call_async(request)
+        while not await until_true(self._node, answer.done, self._timeout_s):
+            if not client.service_is_ready():
+                client.remove_pending_request(answer)
+                raise PeerError(
+                    f'{client.service_name}: no answer within {self._timeout_s:g} s, expected a '
+                    'running node'
+                )
+        return _succeeded(client, answer.result())
+
     async def _ask(self, client: Any, request: Any) -> Any:
         response = await call(self._node, client, request, self._timeout_s)
-        if not response.success:
-            raise PeerError(f'{client.service_name}: {response.message}')
-        return response
+        return _succeeded(client, response)
+
+
+def _succeeded(client: Any, response: Any) -> Any:
+    if not response.success:
+        raise PeerError(f'{client.service_name}: {response.message}')
+    return response
 
 
 def key_values(mapping: Mapping[str, str]) -> list[KeyValue]:
