@@ -18,10 +18,10 @@ def check_publishers(subject: Subject) -> Iterator[Finding]:
         yield subject.finding(
             'missing',
             'topic',
-            'has no publisher',
-            f'one of {subject.channel.message_type}',
-            f"start the driver of the {subject.channel.device}, or remap '{subject.topic}' to "
-            'its topic',
+            'is not there',
+            f'a publisher of {subject.channel.message_type}',
+            f'start what publishes it (device: {subject.channel.device}), or remap '
+            f"'{subject.topic}' to its topic",
         )
         return
     if len(offers) > 1:

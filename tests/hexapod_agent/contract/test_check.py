@@ -54,7 +54,7 @@ def named(finding, kind: str, field: str, *words: str) -> None:
 @pytest.mark.parametrize('topic', ['joint_states', 'imu/data', 'foot_force/lm', 'foot_contacts'])
 def test_a_missing_publisher_is_named(robot, topic: str) -> None:
     robot.change(topic, lambda had: replace(had, offers=(), samples=()))
-    named(robot.fault(), 'missing', 'topic', f'/robot/{topic}', 'start the driver')
+    named(robot.fault(), 'missing', 'topic', f'/robot/{topic}', 'remap')
 
 
 def test_a_silent_driver_is_named(robot) -> None:

@@ -1,0 +1,85 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Node `check_sensors`: holds the sensors of a live graph, or of a bag, against the contract."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from hexapod_agent.contract.check import check_sensors
+from hexapod_agent.contract.messages import listen_and_check
+from hexapod_agent.contract.report import SensorReport
+from hexapod_node.coroutines import start
+from hexapod_node.spin import run
+from rclpy.node import Node
+from rclpy.task import Future
+
+from hexapod_doe.contract.bag_evidence import bag_evidence
+from hexapod_doe.contract.check_options import CheckOptions, parse
+from hexapod_doe.contract.sensor_table import show
+from hexapod_doe.errors import BagError
+
+_ROS_ARGS = '--ros-args'
+
+
+class CheckSensorsNode(Node):
+    """Listens to the topics of a set, prints what it found and ends.
+
+    Attributes:
+        exit_status: of the process: 0 if the sensors pass.
+    """
+
+    def __init__(self, options: CheckOptions) -> None:
+        super().__init__('check_sensors')
+        self.exit_status: int | None = None
+        self._options = options
+        checked = listen_and_check(
+            self, options.spec, options.seconds, options.limits, options.reliable, options.wait
+        )
+        start(checked).add_done_callback(self._on_checked)
+
+    def _on_checked(self, checked: Future) -> None:
+        self.exit_status = 1
+        self.exit_status = tell(checked.result(), self._options)
+
+
+def tell(report: SensorReport, options: CheckOptions) -> int:
+    """Print a report, and write it where the options say so; return the exit status."""
+    text = json.dumps(report.as_dict(), indent=2, ensure_ascii=False)
+    if options.json == '-':
+        sys.stdout.write(f'{text}\n')
+    else:
+        show(report)
+    if options.json not in ('', '-'):
+        Path(options.json).write_text(f'{text}\n', encoding='utf-8')
+    return 0 if report.passed else 1
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line; what follows `--ros-args` goes to the node."""
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    count = words.index(_ROS_ARGS) if _ROS_ARGS in words else len(words)
+    options = parse(words[:count])
+    if options.bag is None:
+        remaps = [word for pair in options.remaps.items() for word in ('-r', ':='.join(pair))]
+        run(lambda: CheckSensorsNode(options), [_ROS_ARGS, *remaps, *words[count:]])
+    else:
+        sys.exit(_check_bag(options.bag, options))
+
+
+def _check_bag(bag: Path, options: CheckOptions) -> int | str:
+    """Return the exit status, or what the bag lacks."""
+    try:
+        evidence = bag_evidence(bag, options.spec, options.remaps)
+        report = check_sensors(options.spec, evidence, options.limits, options.reliable)
+        return tell(report, options)
+    except (BagError, OSError) as error:
+        return f'check_sensors: {error}'
+
+
+if __name__ == '__main__':
+    main()
