@@ -37,6 +37,10 @@ COXA_LENGTH = 0.052
 FEMUR_LENGTH = 0.066
 TIBIA_LENGTH = 0.133
 FOOT_RADIUS = 0.012
+# Radii of the capsules that links are made of [m].
+COXA_RADIUS = 0.016
+FEMUR_RADIUS = 0.014
+TIBIA_RADIUS = 0.010
 
 # Where each leg's hip axis stands in base_link [m], and the yaw [rad] at which a leg with hip
 # angle zero points away from the body. Front and rear legs splay so that the feet span a wide

@@ -68,6 +68,9 @@ def test_link_lengths_and_hip_mounts(model: mujoco.MjModel) -> None:
         np.testing.assert_allclose(model.site(f'{leg}_foot').pos, [0, 0, -robot.TIBIA_LENGTH])
         np.testing.assert_allclose(model.geom(f'{leg}_foot').pos, [0, 0, -robot.TIBIA_LENGTH])
         assert model.geom(f'{leg}_foot').size[0] == robot.FOOT_RADIUS
+        assert model.geom(f'{leg}_coxa').size[0] == robot.COXA_RADIUS
+        assert model.geom(f'{leg}_femur').size[0] == robot.FEMUR_RADIUS
+        assert model.geom(f'{leg}_tibia').size[0] == robot.TIBIA_RADIUS
     np.testing.assert_allclose(model.geom('body').size, robot.BODY_HALF_SIZE)
 
 
