@@ -78,7 +78,7 @@ class RealTimePlay:
         self._node = node
         self._agent = agent
         self._reason = ''
-        self._rejected = 0
+        self._rejected = self._holds = 0
         self._command = CpgCommand()
         self._publisher = node.create_publisher(CpgCommand, 'cpg/command', COMMAND)
         self._cpg = node.create_client(SetParametersAtomically, 'cpg/set_parameters_atomically')
@@ -103,6 +103,7 @@ class RealTimePlay:
             'state': str(self.state),
             'observations': self._agent.spec.letters,
             'rejected': self._rejected,
+            'holds': self._holds,
         }
         values |= self._ticker.meter.values() if self._ticker is not None else {}
         values |= self._samples.values()
@@ -165,6 +166,7 @@ class RealTimePlay:
         self.state = State.DRIVING
 
     def _hold(self, reason: str) -> None:
+        self._holds += self.state is not State.HOLDING
         self.state = State.HOLDING
         self._say(f'{reason}; the robot stops')
 

@@ -69,7 +69,7 @@ class CpgNode(LifecycleNode):
         self._locomotion = Locomotion(
             self._config.get(), JointGuard(value['max_joint_rate']), value['stop_rate']
         )
-        self._active = False
+        self._active = self._has_walked = False
         self._rejected = 0
         self._trajectory = new_trajectory()
         self._state = CpgState()
@@ -102,10 +102,8 @@ class CpgNode(LifecycleNode):
         return super().on_configure(state)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Play commands from now on, and measure afresh."""
-        self._active = True
-        if self._ticker is not None:
-            self._ticker.meter.restart()
+        """Play commands from now on."""
+        self._active, self._has_walked = True, False
         return super().on_activate(state)
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -179,6 +177,9 @@ class CpgNode(LifecycleNode):
     def _walk(self, command: Command) -> NDArray[np.float64]:
         if self._locomotion.motion is Motion.STANDING:
             self._locomotion.restart(self._config.get())
+        if self._ticker is not None and not self._has_walked:
+            self._ticker.meter.restart()  # what counts is how the robot walks
+            self._has_walked = True
         try:
             return self._locomotion.walk(command)
         except ValueError as error:

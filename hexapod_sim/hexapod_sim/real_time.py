@@ -60,9 +60,9 @@ class RealTime:
         self._now_ns = node.get_clock().now().nanoseconds if self._factor == 1.0 else 0
         self._caught_up = self._skipped = 0
         max_age_ns = round(node.get_parameter('max_age').value * 1e9)
-        self._samples = NewestSamples(
-            node, {_TOPIC: Input(JointTrajectory, max_age_ns, targets_from_message)}, lambda: self._now_ns
-        )
+        wanted = Input(JointTrajectory, max_age_ns, targets_from_message)
+        clock = None if self._factor == 1.0 else lambda: self._now_ns
+        self._samples = NewestSamples(node, {_TOPIC: wanted}, clock)
         phase_ns = round(node.get_parameter('phase').value * 1e9)
         period_ns = round(CONTROL_PERIOD_NS / self._factor)
         self._ticker = Ticker(node, period_ns, self._on_tick, phase_ns)

@@ -26,6 +26,7 @@ setup(
     zip_safe=False,
     entry_points={
         'console_scripts': [
+            'realtime_report = hexapod_bringup.realtime_report:main',
             'worker_node = hexapod_bringup.worker_node:main',
         ],
     },

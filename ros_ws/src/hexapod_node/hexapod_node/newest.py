@@ -48,6 +48,7 @@ class NewestSamples:
             topic: SampleGate(topic, wanted.max_age_ns, wanted.decode)
             for topic, wanted in inputs.items()
         }
+        self._age_ns: dict[str, int | None] = dict.fromkeys(inputs)
         self._oldest_ns = dict.fromkeys(inputs, 0)
         self._subscriptions = [
             node.create_subscription(
@@ -66,8 +67,8 @@ class NewestSamples:
         now_ns = self._now_ns()
         values = {topic: gate.value(now_ns) for topic, gate in self.gates.items()}
         for topic, gate in self.gates.items():
-            age_ns = gate.age_ns(now_ns) or 0
-            self._oldest_ns[topic] = max(self._oldest_ns[topic], age_ns)
+            self._age_ns[topic] = age_ns = gate.age_ns(now_ns)
+            self._oldest_ns[topic] = max(self._oldest_ns[topic], age_ns or 0)
         return None if any(value is None for value in values.values()) else values
 
     def fault(self) -> str:
@@ -81,11 +82,13 @@ class NewestSamples:
         return sum(gate.counts.faults for gate in self.gates.values())
 
     def values(self) -> dict[str, object]:
-        """Return what the diagnostics show: counts, and the greatest age since the last time."""
-        now_ns = self._now_ns()
+        """Return what the diagnostics show: counts, and ages when the values were taken.
+
+        The greatest age is that since the last call.
+        """
         shown: dict[str, object] = {}
         for topic, gate in self.gates.items():
-            age_ns = gate.age_ns(now_ns)
+            age_ns = self._age_ns[topic]
             shown[f'{topic}.age_ms'] = '' if age_ns is None else f'{age_ns * 1e-6:.1f}'
             shown[f'{topic}.age_max_ms'] = f'{self._oldest_ns[topic] * 1e-6:.1f}'
             shown |= {f'{topic}.{kind}': count for kind, count in asdict(gate.counts).items()}

@@ -15,6 +15,9 @@ from hexapod_node.schedule import Schedule
 from hexapod_node.tick_meter import TickMeter
 
 _SECOND_NS = 1_000_000_000
+# A timer keeps the phase at which it was made, so it is made again if the moment was missed.
+_PHASE_TOLERANCE_NS = 1_000_000
+_PHASE_TRIES = 40
 
 
 @dataclass(frozen=True)
@@ -63,16 +66,31 @@ class Ticker:
         self._period_ns = period_ns
         self._simulated = bool(node.get_parameter('use_sim_time').value)
         self._clock = node.get_clock() if self._simulated else STEADY
-        wait_ns = (phase_ns - node.get_clock().now().nanoseconds) % period_ns
-        self._timer = node.create_timer(wait_ns / _SECOND_NS, self._begin, clock=STEADY)
+        self._phase_ns = phase_ns
+        self._tries = 0
+        self._await_phase()
 
     def destroy(self) -> None:
         """Tick no more."""
         self._node.destroy_timer(self._timer)
 
+    def _await_phase(self) -> None:
+        """Wait for the moment from which the periodic timer may run."""
+        wait_ns = self._period_ns - self._since_phase_ns()
+        self._timer = self._node.create_timer(wait_ns / _SECOND_NS, self._begin, clock=STEADY)
+
+    def _since_phase_ns(self) -> int:
+        now_ns = self._node.get_clock().now().nanoseconds
+        return (now_ns - self._phase_ns) % self._period_ns
+
     def _begin(self) -> None:
         """Start the periodic timer: its first tick is a period from now."""
         self._node.destroy_timer(self._timer)
+        self._tries += 1
+        late = self._since_phase_ns() > _PHASE_TOLERANCE_NS
+        if late and not self._simulated and self._tries < _PHASE_TRIES:
+            self._await_phase()
+            return
         now_ns = self._clock.now().nanoseconds
         self._timer = self._node.create_timer(
             self._period_ns / _SECOND_NS, self._on_timer, clock=self._clock
