@@ -95,7 +95,7 @@ class Progress:
     @property
     def episodes_per_second(self) -> float:
         """Rate of all workers that have a run."""
-        return sum(worker.episodes_per_second for worker in self.workers if worker.runs)
+        return sum((w.episodes_per_second for w in self.workers if w.runs), 0.0)
 
     @property
     def seconds_left(self) -> float:
@@ -112,7 +112,7 @@ class Progress:
 def _worker(name: str, runs: Iterable[Run]) -> Worker:
     runs = list(runs)
     current = tuple(run for run in runs if run.state is State.RUNNING)
-    rate = sum(run.episodes_per_second for run in current)
+    rate = sum((run.episodes_per_second for run in current), 0.0)
     if not rate:  # its present run has no episode yet
         seconds = sum(run.seconds for run in runs)
         fresh = sum(len(run.returns) - run.earlier for run in runs)

@@ -30,6 +30,10 @@ def test_nothing_is_known_of_a_time_left_that_nobody_works_off():
     assert math.isnan(made(DUE).seconds_left)
 
 
+def test_the_rate_is_a_real_number_also_where_it_is_nought():
+    assert isinstance(made(DUE).episodes_per_second, float)
+
+
 def test_nothing_is_left_of_what_is_done_or_failed():
     failed = Run('d', '', State.FAILED, planned=10)
     assert made(DONE, failed).seconds_left == 0.0
