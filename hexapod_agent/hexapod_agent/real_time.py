@@ -10,13 +10,13 @@ from dataclasses import asdict
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 from diagnostic_msgs.msg import DiagnosticStatus
 from hexapod_cpg.messages import command_to_message
 from hexapod_interfaces.msg import CpgCommand
 from hexapod_node.calls import ServiceUnavailableError, call
 from hexapod_node.conditions import until_true
 from hexapod_node.coroutines import sleep
+from hexapod_node.invalid_message import InvalidMessageError
 from hexapod_node.newest import Input, NewestSamples
 from hexapod_node.parameters import Parameter, to_messages
 from hexapod_node.qos import COMMAND
@@ -26,6 +26,9 @@ from hexapod_node.ticker import Tick, Ticker
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from rcl_interfaces.srv import SetParametersAtomically
 
+from hexapod_agent.contract.limits import Limits, parse_frames
+from hexapod_agent.contract.messages import listen_and_check
+from hexapod_agent.contract.watch import MessageWatch
 from hexapod_agent.deployment import DeployedAgent
 from hexapod_agent.messages import decode, message_class
 from hexapod_agent.observation import CHANNELS, Channel
@@ -50,6 +53,18 @@ def age_name(channel: Channel) -> str:
 _HEARD = tuple(channel for channel in CHANNELS if channel.topics)
 PARAMETERS: tuple[Parameter, ...] = (
     phase(0.005),
+    Parameter(
+        'check_seconds',
+        1.0,
+        'realtime: how long to check the sensors before the robot moves; 0 for no check',
+        unit='s',
+        range=(0.0, 60.0),
+    ),
+    Parameter(
+        'frames',
+        '',
+        'realtime: frames of drivers whose axes are ours, as <topic>=<frame>, separated by spaces',
+    ),
     *(max_age(age_name(channel), channel.name) for channel in _HEARD),
 )
 
@@ -58,7 +73,9 @@ class State(StrEnum):
     """What the agent does."""
 
     WAITING = 'waiting'
-    """for the pattern generator, or for a first sample of each topic"""
+    """for the pattern generator, for samples, or for the check of the sensors"""
+    REFUSED = 'refused'
+    """does not drive with these sensors; checks them again"""
     DRIVING = 'driving'
     HOLDING = 'holding'
     """gives no commands, so that the pattern generator brings the robot to a stop"""
@@ -82,6 +99,7 @@ class RealTimePlay:
         self._command = CpgCommand()
         self._publisher = node.create_publisher(CpgCommand, 'cpg/command', COMMAND)
         self._cpg = node.create_client(SetParametersAtomically, 'cpg/set_parameters_atomically')
+        self._limits = self._sensor_limits()
         self._samples = NewestSamples(node, self._inputs())
         self._ticker: Ticker | None = None
 
@@ -92,6 +110,7 @@ class RealTimePlay:
             RuntimeError: the pattern generator refuses the agent's configuration.
         """
         await self._configure_cpg()
+        await self._check_sensors()
         while not await until_true(self._node, lambda: not self._samples.fault(), _RETRY_S):
             self._say(self._samples.fault())
         phase_ns = round(self._node.get_parameter('phase').value * 1e9)
@@ -112,12 +131,17 @@ class RealTimePlay:
         level = DiagnosticStatus.WARN if self.state is State.WAITING else DiagnosticStatus.ERROR
         return level, self._reason, values
 
+    def _sensor_limits(self) -> Limits:
+        value = {p.name: self._node.get_parameter(p.name).value for p in PARAMETERS}
+        ages = {topic: value[age_name(channel)] for channel in _HEARD for topic in channel.topics}
+        return Limits(ages=ages, frames=parse_frames(value['frames']))
+
     def _inputs(self) -> dict[str, Input]:
         return {
             topic: Input(
                 message_class(channel.message_type),
                 round(self._node.get_parameter(age_name(channel)).value * 1e9),
-                _checked(channel),
+                _checked(channel, MessageWatch(channel, topic, self._limits)),
             )
             for channel in self._agent.spec.channels
             for topic in channel.topics
@@ -137,6 +161,20 @@ class RealTimePlay:
             if not response.result.successful:
                 raise RuntimeError(f'{self._cpg.service_name}: {response.result.reason}')
             return
+
+    async def _check_sensors(self) -> None:
+        """Wait until the sensors keep the contract, and say what is wrong while they do not."""
+        seconds = self._node.get_parameter('check_seconds').value
+        while seconds:
+            spec = self._agent.spec
+            report = await listen_and_check(self._node, spec, seconds, self._limits)
+            if report.passed:
+                self.state = State.WAITING
+                return
+            self.state = State.REFUSED
+            if report.refusal != self._reason:
+                self._reason = report.refusal
+                self._node.get_logger().error(f'does not drive:\n{report.refusal}')
 
     def _on_tick(self, tick: Tick) -> None:
         """Act on the newest samples, or hold."""
@@ -175,22 +213,15 @@ class RealTimePlay:
         self._node.get_logger().warning(reason, throttle_duration_sec=_THROTTLE_S)
 
 
-def _checked(channel: Channel) -> Callable[[Any], Any]:
-    """Return what lets the good messages of a channel's topics through.
-
-    It raises ValueError where a message cannot be observed.
-    """
+def _checked(channel: Channel, watch: MessageWatch) -> Callable[[Any], Any]:
+    """Return what lets the good messages of a topic through and raises for the others."""
 
     def check(message: Any) -> Any:
+        finding = watch.check(message)
+        if finding is not None:
+            raise InvalidMessageError(finding.kind, str(finding))
         # Of a channel with several topics, each has messages of the same kind.
-        readings = decode(channel, dict.fromkeys(channel.topics, message))
-        for key, size in zip(channel.readings, channel.sizes, strict=True):
-            value = readings[key]
-            if value.size != size or not np.isfinite(value).all():
-                raise ValueError(
-                    f'{channel.topics[0]}: {key} is {value.tolist()}, expected {size} finite '
-                    'numbers'
-                )
+        decode(channel, dict.fromkeys(channel.topics, message))
         return message
 
     return check

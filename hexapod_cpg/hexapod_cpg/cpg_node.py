@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -12,6 +13,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from hexapod_interfaces.msg import CpgCommand, CpgState
 from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.diagnostics import Diagnostics, Health
+from hexapod_node.invalid_message import fault_kind
 from hexapod_node.matching import unheard
 from hexapod_node.newest import Input, NewestSamples
 from hexapod_node.parameters import ConfigParameters, Parameter, declare
@@ -70,7 +72,7 @@ class CpgNode(LifecycleNode):
             self._config.get(), JointGuard(value['max_joint_rate']), value['stop_rate']
         )
         self._active = self._has_walked = False
-        self._rejected = 0
+        self._rejected: Counter[str] = Counter()
         self._trajectory = new_trajectory()
         self._state = CpgState()
         self._real_time = value['sync'] == REALTIME
@@ -155,7 +157,7 @@ class CpgNode(LifecycleNode):
         try:
             targets = self._play(message)
         except ValueError as error:
-            self._rejected += 1
+            self._rejected[fault_kind(error)] += 1
             self.get_logger().error(f'{error}; the period is not played')
             return
         self._publish_trajectory(targets, stamp_ns)
@@ -183,7 +185,7 @@ class CpgNode(LifecycleNode):
         try:
             return self._locomotion.walk(command)
         except ValueError as error:
-            self._rejected += 1
+            self._rejected[fault_kind(error)] += 1
             self.get_logger().error(f'{error}; the robot stops', throttle_duration_sec=1.0)
             return self._locomotion.stop()
 
@@ -203,9 +205,10 @@ class CpgNode(LifecycleNode):
         values: dict[str, object] = {
             'active': self._active,
             'motion': str(self._locomotion.motion),
-            'rejected': self._rejected,
+            'rejected': self._rejected.total(),
             'beyond_limit': guard.beyond_limit,
             'beyond_rate': guard.beyond_rate,
+            **self._rejected,
         }
         if self._real_time:
             values |= self._samples.values()
@@ -214,7 +217,7 @@ class CpgNode(LifecycleNode):
             level = DiagnosticStatus.WARN if fault else DiagnosticStatus.OK
             return level, fault or 'walking', values
         counts = vars(self._due.counts)
-        if self._rejected or any(counts.values()):
+        if self._rejected.total() or any(counts.values()):
             return DiagnosticStatus.WARN, 'commands came that were not due', values | counts
         return DiagnosticStatus.OK, 'in step', values | counts
 

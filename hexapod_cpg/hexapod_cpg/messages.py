@@ -9,6 +9,7 @@ from array import array
 
 import numpy as np
 from hexapod_interfaces.msg import CpgCommand
+from hexapod_node.invalid_message import InvalidMessageError
 from hexapod_node.stamps import duration_message
 from hexapod_sim.robot import CONTROL_PERIOD_NS, JOINTS, SUBSTEPS
 from numpy.typing import NDArray
@@ -29,14 +30,15 @@ def command_from_message(message: CpgCommand) -> Command:
     """Return the command that a message carries.
 
     Raises:
-        ValueError: a field holds a number that is not finite; the text names the field.
+        InvalidMessageError: a field holds a number that is not finite; the text names the field.
     """
     values = {}
     for field in COMMAND_FIELDS:
         value = np.asarray(getattr(message, field), dtype=np.float64)
         if not np.isfinite(value).all():
-            raise ValueError(
-                f'cpg/command: {field} is {value.tolist()}, expected 6 finite numbers'
+            raise InvalidMessageError(
+                'not_finite',
+                f'cpg/command: {field} is {value.tolist()}, expected 6 finite numbers',
             )
         values[field] = value
     return Command(**values)

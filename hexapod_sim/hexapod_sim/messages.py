@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from geometry_msgs.msg import TwistStamped, Vector3, WrenchStamped
 from hexapod_interfaces.msg import FootContacts
+from hexapod_node.invalid_message import InvalidMessageError
 from nav_msgs.msg import Odometry
 from numpy.typing import NDArray
 from sensor_msgs.msg import Imu, JointState, Range
@@ -168,26 +169,33 @@ def targets_from_message(message: JointTrajectory) -> NDArray[np.float64]:
     """Return the joint targets of one control period, rad. Shape: (SUBSTEPS, 18).
 
     Raises:
-        ValueError: names, number of points or positions are not those of the robot, or a target
-            is not finite; the text names the field.
+        InvalidMessageError: names, number of points or positions are not those of the robot, or
+            a target is not finite; the text names the field.
     """
     if tuple(message.joint_names) != JOINTS:
-        raise ValueError(
+        raise InvalidMessageError(
+            'wrong_names',
             f'joint_trajectory: joint_names are {list(message.joint_names)}, expected '
-            f'{list(JOINTS)}'
+            f'{list(JOINTS)}',
         )
     if len(message.points) != SUBSTEPS:
-        raise ValueError(f'joint_trajectory: {len(message.points)} points, expected {SUBSTEPS}')
+        raise InvalidMessageError(
+            'wrong_length',
+            f'joint_trajectory: {len(message.points)} points, expected {SUBSTEPS}',
+        )
     targets = np.empty((SUBSTEPS, len(JOINTS)))
     for index, point in enumerate(message.points):
         if len(point.positions) != len(JOINTS):
-            raise ValueError(
+            raise InvalidMessageError(
+                'wrong_length',
                 f'joint_trajectory: point {index} has {len(point.positions)} positions, '
-                f'expected {len(JOINTS)}'
+                f'expected {len(JOINTS)}',
             )
         targets[index] = point.positions
     if not np.isfinite(targets).all():
-        raise ValueError('joint_trajectory: positions hold NaN or infinity, expected radians')
+        raise InvalidMessageError(
+            'not_finite', 'joint_trajectory: positions hold NaN or infinity, expected radians'
+        )
     return targets
 
 

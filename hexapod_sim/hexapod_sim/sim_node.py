@@ -5,11 +5,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.diagnostics import Diagnostics, Health
+from hexapod_node.invalid_message import fault_kind
 from hexapod_node.matching import unheard
 from hexapod_node.parameters import ConfigParameters, Parameter, declare
 from hexapod_node.qos import LOCK_STEP
@@ -58,7 +60,7 @@ class SimNode(Node):
         paced = value['sync'] != REALTIME
         self._viewer = Viewer(self._task.simulation, paced) if value['viewer'] else None
         self._now_ns = 0
-        self._rejected = 0
+        self._rejected: Counter[str] = Counter()
         self._due = DuePeriod(CONTROL_PERIOD_NS)
         self._topics = SimPublishers(self, self._task)
         self._real_time: RealTime | None = None
@@ -103,7 +105,7 @@ class SimNode(Node):
         try:
             outcome = self._task.advance(targets_from_message(message))
         except ValueError as error:
-            self._rejected += 1
+            self._rejected[fault_kind(error)] += 1
             self.get_logger().error(f'{error}; the period is not simulated')
             return
         self._now_ns += CONTROL_PERIOD_NS
@@ -121,7 +123,7 @@ class SimNode(Node):
     def _health(self) -> Health:
         if self._real_time is not None:
             return self._real_time.health()
-        faults = vars(self._due.counts) | {'rejected': self._rejected}
+        faults = vars(self._due.counts) | {'rejected': self._rejected.total(), **self._rejected}
         if any(faults.values()):
             return DiagnosticStatus.WARN, 'trajectories came that were not due', faults
         return DiagnosticStatus.OK, 'in step', faults

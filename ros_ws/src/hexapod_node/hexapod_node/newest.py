@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
@@ -91,7 +91,7 @@ class NewestSamples:
             age_ns = self._age_ns[topic]
             shown[f'{topic}.age_ms'] = '' if age_ns is None else f'{age_ns * 1e-6:.1f}'
             shown[f'{topic}.age_max_ms'] = f'{self._oldest_ns[topic] * 1e-6:.1f}'
-            shown |= {f'{topic}.{kind}': count for kind, count in asdict(gate.counts).items()}
+            shown |= {f'{topic}.{kind}': count for kind, count in gate.shown_counts().items()}
             self._oldest_ns[topic] = 0
         return shown
 

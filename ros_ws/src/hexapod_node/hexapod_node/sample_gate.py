@@ -5,9 +5,12 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Generic, TypeVar
+
+from hexapod_node.invalid_message import fault_kind
 
 Value = TypeVar('Value')
 
@@ -51,6 +54,7 @@ class SampleGate(Generic[Value]):
 
     Attributes:
         counts: What came so far.
+        kinds: Samples with contents that cannot be used, by the kind of their fault.
         reason: Why the last bad sample was dropped; empty if none was.
     """
 
@@ -60,9 +64,11 @@ class SampleGate(Generic[Value]):
         Args:
             topic: Name for texts.
             max_age_ns: Greatest age at which a sample still counts.
-            decode: Makes a value of a message; raises ValueError where it cannot.
+            decode: Makes a value of a message; raises ValueError where it cannot, or
+                InvalidMessageError to be counted by kind.
         """
         self.counts = SampleCounts()
+        self.kinds: Counter[str] = Counter()
         self.reason = ''
         self._topic = topic
         self._max_age_ns = max_age_ns
@@ -79,6 +85,7 @@ class SampleGate(Generic[Value]):
                 self._value = self._decode(message)
             except ValueError as error:
                 self.counts.invalid += 1
+                self.kinds[fault_kind(error)] += 1
                 reason = str(error)
             else:
                 self._stamp_ns = stamp_ns
@@ -105,6 +112,10 @@ class SampleGate(Generic[Value]):
             f'{self._topic}: newest good sample is {age_ns * 1e-9:.3f} s old, expected at most '
             f'{self._max_age_ns * 1e-9:g} s{cause}'
         )
+
+    def shown_counts(self) -> dict[str, int]:
+        """Return every count by name, for the diagnostics."""
+        return asdict(self.counts) | dict(self.kinds)
 
     def _young(self, now_ns: int) -> bool:
         age_ns = self.age_ns(now_ns)
