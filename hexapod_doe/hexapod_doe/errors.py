@@ -10,3 +10,7 @@ class BagError(ValueError):
 
 class AnalysisError(ValueError):
     """A table or an option does not allow the analysis; the text names it and the expectation."""
+
+
+class CampaignError(ValueError):
+    """A campaign cannot go on; the text names its folder and what was expected of it."""

@@ -8,15 +8,15 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Sequence
+from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from action_msgs.msg import GoalStatus
-from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from diagnostic_msgs.msg import DiagnosticStatus
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import CampaignStatus
-from hexapod_node.coroutines import sleep, start, until
+from hexapod_node.coroutines import STEADY, sleep, start
 from hexapod_node.diagnostics import Diagnostics, Health
 from hexapod_node.parameters import Parameter, declare
 from hexapod_node.qos import LATCHED
@@ -25,14 +25,18 @@ from rclpy.action import ActionClient, get_action_names_and_types
 from rclpy.node import Node
 from rclpy.task import Future
 
-from hexapod_doe.campaigns.campaign import Campaign, Row
+from hexapod_doe.campaigns.campaign import Campaign, Row, RunSettings
+from hexapod_doe.campaigns.campaign_lock import campaign_lock
 from hexapod_doe.campaigns.dashboard import Dashboard
+from hexapod_doe.campaigns.failures import FailureLog
 from hexapod_doe.campaigns.local_workers import LocalWorkers
+from hexapod_doe.campaigns.messages import train_goal
 from hexapod_doe.campaigns.page_writer import PageWriter
+from hexapod_doe.campaigns.peers import Ended, WorkerBusyError, WorkerLostError, WorkerPeer
+from hexapod_doe.errors import CampaignError
 
 _ACTION = 'hexapod_interfaces/action/TrainRun'
 _TICK_S = 0.2
-_LOST_S = 5.0
 _BUSY_S = 2.0
 
 PARAMETERS = (
@@ -60,30 +64,15 @@ PARAMETERS = (
         unit='s',
         range=(1.0, 86400.0),
     ),
+    Parameter(
+        'stall_timeout',
+        60.0,
+        'longest time without a sign of life of a worker, before its row goes to another',
+        unit='s',
+        range=(2.0, 86400.0),
+    ),
     Parameter('attempts', 3, 'how often a failing row is tried', range=(1, 100)),
 )
-
-
-class Worker:
-    """One worker: its action server, and the row that it has."""
-
-    def __init__(self, node: Node, action: str) -> None:
-        self.name = action.rsplit('/', 1)[0] or '/'
-        self.client = ActionClient(node, TrainRun, action)
-        self.row: Row | None = None
-        self.gone = False
-        self._seen = time.monotonic()
-
-    def present(self) -> bool:
-        """Whether the server is there; the name of an action may be that of a client alone."""
-        if self.client.server_is_ready():
-            self._seen = time.monotonic()
-            return True
-        return False
-
-    def lost(self) -> bool:
-        """Whether the server has been gone for a while."""
-        return not self.present() and time.monotonic() - self._seen > _LOST_S
 
 
 class ManagerNode(Node):
@@ -95,8 +84,16 @@ class ManagerNode(Node):
         plan = Path(self._parameter('plan'))
         if not plan.is_file():
             raise FileNotFoundError(f"plan '{plan}': no such file, expected a plan.csv of `plan`")
+        self._held = ExitStack()
+        self._held.enter_context(campaign_lock(plan.resolve().parent))
         self._campaign = Campaign.open(plan, self._parameter('attempts'))
-        self._workers: dict[str, Worker] = {}
+        self._settings = RunSettings(
+            self._parameter('episodes'), self._parameter('config'), self._parameter('record_every')
+        )
+        self._failures = FailureLog(self._campaign.directory)
+        self._workers: dict[str, WorkerPeer] = {}
+        self._buried: set[str] = set()
+        """Names of local workers that died; the network knows them for a while."""
         self._alone_since = time.monotonic()
         self._fault: Exception | None = None
         self.exit_status: int | None = None
@@ -108,7 +105,7 @@ class ManagerNode(Node):
             self._parameter('worker_command'),
             self._campaign.directory / 'logs',
         )
-        self.create_timer(_TICK_S, self._on_tick)
+        self.create_timer(_TICK_S, self._on_tick, clock=STEADY)
         self._publish_status()
         Diagnostics(self, self._health)
 
@@ -117,6 +114,7 @@ class ManagerNode(Node):
         self._local.stop()
         self._page.close()
         self._dashboard.close()
+        self._held.close()
         super().destroy_node()
 
     def _on_tick(self) -> None:
@@ -125,14 +123,17 @@ class ManagerNode(Node):
             raise self._fault
         if self.exit_status is not None:
             return
-        for text in self._local.revive():
-            self._dashboard.log(text)
+        for name, end in self._local.revive().items():
+            self._dashboard.log(f'{name} {end}')
+            self._buried.add(f'/{name}')
         self._discover()
-        for worker in [w for w in self._workers.values() if w.lost()]:
-            self._drop(worker)
+        for worker in list(self._workers.values()):
+            if worker.name in self._buried or worker.lost():
+                worker.gone = 'its process is gone'
+                del self._workers[worker.name]
         if self._campaign.finished:
             self.exit_status = self._close()
-        if any(worker.present() for worker in self._workers.values()):
+        elif self._campaign.running or any(worker.ready for worker in self._workers.values()):
             self._alone_since = time.monotonic()
         elif time.monotonic() - self._alone_since > self._parameter('worker_timeout'):
             self._dashboard.log(
@@ -144,81 +145,65 @@ class ManagerNode(Node):
 
     def _discover(self) -> None:
         for action, types in get_action_names_and_types(self):
-            if _ACTION in types and action not in self._workers:
-                worker = Worker(self, action)
-                self._workers[action] = worker
+            name = action.rsplit('/', 1)[0] or '/'
+            if _ACTION in types and name not in self._workers and name not in self._buried:
+                client = ActionClient(self, TrainRun, action)
+                worker = WorkerPeer(self, client, name, self._parameter('stall_timeout'))
+                self._workers[name] = worker
                 start(self._serve(worker)).add_done_callback(self._on_served)
 
     def _on_served(self, served: Future) -> None:
         """Keep an error of a worker's coroutine for the next tick, which ends the node with it."""
         self._fault = served.exception() or self._fault
 
-    async def _serve(self, worker: Worker) -> None:
+    async def _serve(self, worker: WorkerPeer) -> None:
         """Give a worker one row after another, for as long as it is there."""
-        while not worker.gone and not worker.client.server_is_ready():
-            await sleep(self, _TICK_S)
         while not worker.gone:
-            row = self._campaign.take(worker.name)
-            if row is None:
+            present = [other.name for other in self._workers.values() if other.ready]
+            row = self._campaign.take(worker.name, present) if worker.ready else None
+            if row is None or self.exit_status is not None:
                 await sleep(self, _TICK_S)
                 continue
-            worker.row = row
             await self._train(worker, row)
-            worker.row = None
             self._publish_status()
+        worker.close()
 
-    async def _train(self, worker: Worker, row: Row) -> None:
+    async def _train(self, worker: WorkerPeer, row: Row) -> None:
         """Have a worker train one row, and judge what comes back."""
-        self._dashboard.begin(worker.name, row.run_id, row.observations)
-        self._publish_status()
-        goal_handle = await until(
-            worker.client.send_goal_async(
-                self._goal(row), feedback_callback=partial(self._on_feedback, worker, row)
+        try:
+            ended = await worker.train(
+                train_goal(row, self._settings),
+                partial(self._dashboard.episode, worker.name, row.run_id),
+                partial(self._on_begin, worker, row),
             )
-        )
-        if not goal_handle.accepted:  # somebody else's run is under way there
+        except WorkerBusyError:
             self._campaign.release(row)
             await sleep(self, _BUSY_S)
-            return
-        response = await until(goal_handle.get_result_async())
-        if self._campaign.running.get(row.run_id) != worker.name:
-            return  # it was given up and is another worker's by now
-        if response.status == GoalStatus.STATUS_SUCCEEDED and self._campaign.complete(row):
-            reward = response.result.final_average_reward
-            text = f'{row.run_id}  sensors {row.observations or "none"}  reward {reward:.1f}'
+        except WorkerLostError as error:
+            self._campaign.release(row)
+            self._dashboard.end(worker.name, f'{row.run_id} is due again, {error}', done=False)
+            self._local.kill(worker.name.strip('/'))
+        else:
+            self._judge(worker, row, ended)
+
+    def _on_begin(self, worker: WorkerPeer, row: Row) -> None:
+        self._dashboard.begin(worker.name, row.run_id, row.observations)
+        self._publish_status()
+
+    def _judge(self, worker: WorkerPeer, row: Row, ended: Ended) -> None:
+        """Count a row as done if its bag is whole, whatever the worker says."""
+        reason = ended.message or f'bag {row.bag} is not complete'
+        if self._campaign.complete(row, reason):
+            text = f'{row.run_id}  sensors {row.observations or "none"}  reward {ended.reward:.1f}'
             self._dashboard.end(worker.name, text, done=True)
             return
-        if response.status != GoalStatus.STATUS_SUCCEEDED:
-            self._campaign.fail(row, response.result.message or 'the run was aborted')
-        reason = self._campaign.reasons[row.run_id][-1]
         self._dashboard.end(worker.name, f'{row.run_id} failed: {reason}', done=False)
-
-    def _goal(self, row: Row) -> TrainRun.Goal:
-        return TrainRun.Goal(
-            run_id=row.run_id,
-            observations=row.observations,
-            seed=row.seed,
-            episodes=self._parameter('episodes'),
-            config=self._parameter('config'),
-            bag=str(row.bag),
-            record_every=self._parameter('record_every'),
-            metadata=[KeyValue(key=key, value=value) for key, value in row.metadata.items()],
-        )
-
-    def _on_feedback(
-        self, worker: Worker, row: Row, message: TrainRun.Impl.FeedbackMessage
-    ) -> None:
-        feedback = message.feedback
-        self._dashboard.episode(worker.name, row.run_id, feedback.episode, feedback.episode_return)
-
-    def _drop(self, worker: Worker) -> None:
-        """Forget a worker that is gone; its row is due again."""
-        self._workers = {name: w for name, w in self._workers.items() if w is not worker}
-        if worker.row is not None:
-            self._campaign.release(worker.row)
-            self._dashboard.end(worker.name, f'{worker.name} is gone', done=False)
-        worker.gone = True
-        worker.client.destroy()
+        try:
+            self._campaign.check_writable()
+            self._failures.add(row.run_id, worker.name, reason)
+        except CampaignError as error:  # no fault of the row: nothing can be done here
+            self._dashboard.log(str(error))
+            self.exit_status = 1
 
     def _close(self) -> int:
         """Say how the campaign ended; return the exit status."""
@@ -234,14 +219,14 @@ class ManagerNode(Node):
     def _publish_status(self) -> None:
         self._page.refresh()
         campaign = self._campaign
-        rows = {worker.name: worker.row for worker in self._workers.values()}
+        rows = {worker: run_id for run_id, worker in campaign.running.items()}
         message = CampaignStatus(
             campaign=str(campaign.directory),
             rows=len(campaign.rows),
             done=len(campaign.done),
             failed=len(campaign.failed),
-            workers=list(rows),
-            running=[row.run_id if row else '' for row in rows.values()],
+            workers=list(self._workers),
+            running=[rows.get(name, '') for name in self._workers],
             episodes_per_second=self._dashboard.episodes_per_second,
             eta_seconds=self._dashboard.seconds_left,
         )

@@ -5,15 +5,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import os
+import tempfile
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from hexapod_doe.bags.run_record import is_complete
 from hexapod_doe.designs.plan_file import read_plan
+from hexapod_doe.errors import CampaignError
 
 PLAN_FILE = 'plan.csv'
 RUNS_FOLDER = 'runs'
+_PROBE_BYTES = 1 << 20
 
 
 @dataclass(frozen=True)
@@ -27,6 +31,18 @@ class Row:
     """Directory of the run's bag, complete or not yet there."""
     metadata: Mapping[str, str]
     """Every column of the row, for the bag."""
+
+
+@dataclass(frozen=True)
+class RunSettings:
+    """What all runs of a campaign have in common."""
+
+    episodes: int
+    """Length of a training."""
+    config: str = ''
+    """Hyper-parameter file on the workers; empty for theirs."""
+    record_every: int = 0
+    """Every how many episodes all topics are recorded; 0 for never."""
 
 
 @dataclass
@@ -45,6 +61,8 @@ class Campaign:
     """Worker by run id."""
     reasons: dict[str, list[str]] = field(default_factory=dict)
     """Why each try of a run failed, by run id."""
+    tried: dict[str, set[str]] = field(default_factory=dict)
+    """Workers on which a run failed, by run id."""
 
     @classmethod
     def open(cls, plan: Path, attempts: int = 3) -> Campaign:
@@ -78,19 +96,38 @@ class Campaign:
     @property
     def finished(self) -> bool:
         """Whether no row is due or running."""
-        return not self.running and self._due() is None
+        return not self.running and len({*self.done, *self.failed}) == len(self.rows)
 
-    def take(self, worker: str) -> Row | None:
-        """Give the next row that is due to a worker."""
-        row = self._due()
-        if row is not None:
+    def take(self, worker: str, present: Collection[str] = ()) -> Row | None:
+        """Give the next row that is due to a worker.
+
+        A row that failed on a worker goes to another one, if there is one that has not tried it.
+
+        Args:
+            worker: by name.
+            present: all workers that there are.
+        """
+        gone = {*self.done, *self.running, *self.failed}
+        for row in self.rows:
+            tried = self.tried.get(row.run_id, set())
+            if row.run_id in gone or (worker in tried and not tried.issuperset(present)):
+                continue
+            if is_complete(row.bag):  # by somebody who was given up
+                self.done.add(row.run_id)
+                continue
             self.running[row.run_id] = worker
-        return row
+            return row
+        return None
 
-    def complete(self, row: Row) -> bool:
-        """Count a row as done if its bag is whole; return whether it is."""
+    def complete(self, row: Row, reason: str = '') -> bool:
+        """Count a row as done if its bag is whole; return whether it is.
+
+        Args:
+            row: whose run has ended.
+            reason: why it failed if the bag is not whole, where something is known.
+        """
         if not is_complete(row.bag):
-            self.fail(row, f'bag {row.bag} is not complete')
+            self.fail(row, reason or f'bag {row.bag} is not complete')
             return False
         self.running.pop(row.run_id, None)
         self.done.add(row.run_id)
@@ -98,13 +135,30 @@ class Campaign:
 
     def fail(self, row: Row, reason: str) -> None:
         """Note a failed try; the row is due again unless it was the last one."""
-        self.running.pop(row.run_id, None)
+        worker = self.running.pop(row.run_id, None)
+        if worker is not None:
+            self.tried.setdefault(row.run_id, set()).add(worker)
         self.reasons.setdefault(row.run_id, []).append(reason)
 
     def release(self, row: Row) -> None:
         """Take a row back from a worker that is gone, through no fault of the row."""
         self.running.pop(row.run_id, None)
 
-    def _due(self) -> Row | None:
-        gone = {*self.done, *self.running, *self.failed}
-        return next((row for row in self.rows if row.run_id not in gone), None)
+    def check_writable(self) -> None:
+        """Make sure that the folder takes what a run would write.
+
+        Raises:
+            CampaignError: it does not; the text says why.
+        """
+        runs = self.directory / RUNS_FOLDER
+        try:
+            runs.mkdir(exist_ok=True)
+            with tempfile.TemporaryFile(dir=runs) as probe:
+                probe.write(bytes(_PROBE_BYTES))
+                probe.flush()
+                os.fsync(probe.fileno())
+        except OSError as error:
+            raise CampaignError(
+                f'campaign {self.directory}: cannot write: {error.strerror}; what is done stays '
+                'done, start the same command again when that is put right'
+            ) from error

@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Workers of a campaign as processes on this machine."""
+"""Workers of a campaign as processes on this machine, which live no longer than the campaign."""
 
 from __future__ import annotations
 
@@ -9,9 +9,51 @@ import os
 import shlex
 import signal
 import subprocess
+import time
+from dataclasses import dataclass
 from pathlib import Path
 
+from hexapod_doe.campaigns.leash import leashed
+
+LIFELINE = 'HEXAPOD_LIFELINE'
+"""Environment variable that tells a worker to end when its standard input does."""
 _STOP_S = 10.0
+_SHORT_LIFE_S = 10.0
+_LONGEST_PAUSE_S = 30.0
+
+
+@dataclass
+class _Place:
+    """The worker that runs under a number, or that is about to."""
+
+    first_name: str
+    process: subprocess.Popen[bytes] | None = None
+    lives: int = 0
+    """How often a worker was started here."""
+    began: float = 0.0
+    """When its life began, or the last one ended, on the monotonic clock."""
+    short_lives: int = 0
+    """How many of the last ones ended at once."""
+
+    @property
+    def name(self) -> str:
+        """Namespace of the worker; each life has its own."""
+        return self.first_name if self.lives <= 1 else f'{self.first_name}_{self.lives}'
+
+    @property
+    def pause_s(self) -> float:
+        """How long to wait before the next life: not at all after a long one."""
+        return min(float((1 << self.short_lives) - 1), _LONGEST_PAUSE_S)
+
+    @property
+    def dead(self) -> bool:
+        """Whether its process has ended; its identity is not free for others yet."""
+        return (
+            self.process is not None
+            and self.process.returncode is None
+            and os.waitid(os.P_PID, self.process.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT)
+            is not None
+        )
 
 
 class LocalWorkers:
@@ -28,44 +70,78 @@ class LocalWorkers:
         self._command = command
         self._logs = logs
         logs.mkdir(parents=True, exist_ok=True)
-        self._processes = {
-            name: self._start(name) for name in (f'worker_{n + 1}' for n in range(count))
-        }
+        self._places = [_Place(f'worker_{n + 1}') for n in range(count)]
+        for place in self._places:
+            self._start(place)
 
-    def revive(self) -> list[str]:
-        """Start again what has died; return the names and exit statuses in words."""
-        dead = {name: p for name, p in self._processes.items() if p.poll() is not None}
-        for name in dead:
-            self._processes[name] = self._start(name)
-        return [
-            f'{name} ended with status {process.returncode}, see {self._log(name)}'
-            for name, process in dead.items()
-        ]
+    def revive(self) -> dict[str, str]:
+        """Start again what has died; return how each ended in words, by its name.
+
+        A worker that is started again has a name of its own, so that nobody takes it for the dead
+        one, which the network knows for a while. One that ends at once is started ever later.
+        """
+        ends: dict[str, str] = {}
+        for place in self._places:
+            if place.dead:
+                status = self._bury(place)
+                ends[place.name] = f'ended with status {status}, see {self._log(place)}'
+            elif place.process is None and time.monotonic() - place.began > place.pause_s:
+                self._start(place)
+        return ends
+
+    def kill(self, name: str) -> bool:
+        """End a worker at once, if it is one of these; `revive` starts it again."""
+        for place in self._places:
+            if place.name == name and place.process is not None:
+                _kill_group(place.process)
+                return True
+        return False
 
     def stop(self) -> None:
         """Ask every worker to end, and end those that do not."""
-        for process in self._processes.values():
+        processes = [place.process for place in self._places if place.process is not None]
+        for process in processes:
             if process.poll() is None:
                 process.send_signal(signal.SIGINT)
-        for process in self._processes.values():
+        for process in processes:
             try:
                 process.wait(_STOP_S)
             except subprocess.TimeoutExpired:
-                process.kill()
+                _kill_group(process)
                 process.wait()
 
-    def _log(self, name: str) -> Path:
-        return self._logs / f'{name}.log'
+    def _bury(self, place: _Place) -> int:
+        """Clear what a dead worker leaves, and make ready for the next; return its status."""
+        process, place.process = place.process, None
+        assert process is not None
+        _kill_group(process)  # what it had started itself
+        short = time.monotonic() - place.began < _SHORT_LIFE_S
+        place.short_lives = place.short_lives + 1 if short else 0
+        place.began = time.monotonic()
+        return process.wait()
 
-    def _start(self, name: str) -> subprocess.Popen[bytes]:
+    def _log(self, place: _Place) -> Path:
+        return self._logs / f'{place.first_name}.log'
+
+    def _start(self, place: _Place) -> None:
+        place.lives += 1
         # One worker per core: the mathematics of a worker must not spread over the others'.
-        environment = os.environ | {'OMP_NUM_THREADS': '1', 'MKL_NUM_THREADS': '1'}
-        with self._log(name).open('ab') as log:
-            return subprocess.Popen(
-                shlex.split(self._command.format(name=name)),
-                stdin=subprocess.DEVNULL,
+        environment = os.environ | {'OMP_NUM_THREADS': '1', 'MKL_NUM_THREADS': '1', LIFELINE: '1'}
+        with self._log(place).open('ab') as log:
+            place.process = subprocess.Popen(
+                leashed(shlex.split(self._command.format(name=place.name))),
+                stdin=subprocess.PIPE,  # never written to: it ends with this process
                 stdout=log,
                 stderr=subprocess.STDOUT,
                 env=environment,
                 start_new_session=True,  # Ctrl-C reaches the manager, which ends them in order
             )
+        place.began = time.monotonic()
+
+
+def _kill_group(process: subprocess.Popen[bytes]) -> None:
+    """End a process and whatever it started; its session is its own."""
+    try:
+        os.killpg(process.pid, signal.SIGKILL)
+    except ProcessLookupError:  # all of it has ended
+        return

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from hexapod_agent.agent_node import AgentNode
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_doe.recorder_node import RecorderNode
+from hexapod_node.lifeline import follow
 from hexapod_node.spin import run
 from hexapod_sim.sim_node import SimNode
 from rclpy.node import Node
@@ -21,5 +22,6 @@ def make_worker() -> list[Node]:
 
 
 def main(args: Sequence[str] | None = None) -> None:
-    """Run the worker until a signal comes."""
+    """Run the worker until a signal comes, or the manager that started it ends."""
+    follow()
     run(make_worker, args)

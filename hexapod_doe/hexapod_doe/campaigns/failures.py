@@ -1,0 +1,49 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Why tries of rows failed, as a file in the campaign's folder that outlives its manager."""
+
+from __future__ import annotations
+
+import csv
+from datetime import UTC, datetime
+from pathlib import Path
+
+FAILURES_FILE = 'failures.csv'
+_COLUMNS = ('time', 'run_id', 'worker', 'reason')
+
+
+class FailureLog:
+    """The failures of one manager, on the disk at once."""
+
+    def __init__(self, directory: Path) -> None:
+        """Begin without failures: the rows of an earlier manager are tried again."""
+        self._path = directory / FAILURES_FILE
+        self._path.unlink(missing_ok=True)
+
+    def add(self, run_id: str, worker: str, reason: str) -> None:
+        """Note a failed try.
+
+        Raises:
+            OSError: the folder cannot be written.
+        """
+        fresh = not self._path.exists()
+        with self._path.open('a', newline='', encoding='utf-8') as file:
+            writer = csv.writer(file)
+            if fresh:
+                writer.writerow(_COLUMNS)
+            now = datetime.now(UTC).isoformat(timespec='seconds')
+            writer.writerow((now, run_id, worker, reason))
+
+
+def read_failures(directory: Path) -> dict[str, list[str]]:
+    """Return the reasons by run id; rows that were done later are among them."""
+    reasons: dict[str, list[str]] = {}
+    try:
+        file = (directory / FAILURES_FILE).open(newline='', encoding='utf-8')
+    except FileNotFoundError:
+        return reasons
+    with file:
+        for row in csv.DictReader(file):
+            reasons.setdefault(row['run_id'], []).append(row['reason'])
+    return reasons

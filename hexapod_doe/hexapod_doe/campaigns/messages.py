@@ -1,0 +1,26 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Rows of a campaign as goals for workers."""
+
+from __future__ import annotations
+
+from diagnostic_msgs.msg import KeyValue
+from hexapod_interfaces.action import TrainRun
+
+from hexapod_doe.campaigns.campaign import Row, RunSettings
+
+
+def train_goal(row: Row, settings: RunSettings) -> TrainRun.Goal:
+    """Return the goal that trains a row, or goes on with what was begun of it."""
+    return TrainRun.Goal(
+        run_id=row.run_id,
+        observations=row.observations,
+        seed=row.seed,
+        episodes=settings.episodes,
+        config=settings.config,
+        bag=str(row.bag),
+        record_every=settings.record_every,
+        resume=True,
+        metadata=[KeyValue(key=key, value=value) for key, value in row.metadata.items()],
+    )
