@@ -23,6 +23,7 @@ setup(
     entry_points={
         'console_scripts': [
             'sim_node = hexapod_sim.sim_node:main',
+            'fake_driver = hexapod_sim.fake_driver_node:main',
         ],
     },
 )

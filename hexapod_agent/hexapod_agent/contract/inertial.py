@@ -62,7 +62,8 @@ def check_orientation(subject: Subject) -> Iterator[Finding]:
         yield subject.finding('bad_quaternion', field, found, 'a unit quaternion', cure)
         return
     q = subject.stack(field)
-    norms = np.linalg.norm(q, axis=1)
+    with np.errstate(over='ignore'):  # a norm beyond all numbers is not 1 either
+        norms = np.linalg.norm(q, axis=1)
     worst = float(norms[np.argmax(np.abs(norms - 1.0))])
     if abs(worst - 1.0) > subject.limits.norm_error:
         if worst > subject.limits.norm_error:

@@ -37,6 +37,8 @@ from hexapod_agent.observation import Channel
 _PERSISTENT = ('wrong_unit', 'flipped_gravity', 'wrong_axes')
 _SECOND = 1_000_000_000 // CONTROL_PERIOD_NS
 _SMOOTHING = 2.0 / _SECOND
+# What a foot's impact gives; a single wild number must not stay in the mean for long.
+_MOST_FORCE = 10.0 * GRAVITY
 
 _Check = Callable[[Subject], Iterator[Finding]]
 _IN_ONE_MESSAGE: tuple[_Check, ...] = (
@@ -121,7 +123,8 @@ class MessageWatch:
         force = taken.values.get(ACCELERATION)
         if force is None or not np.isfinite(force).all():
             return None
-        self._force += _SMOOTHING * (force - self._force)
+        jolt = np.clip(force, -_MOST_FORCE, _MOST_FORCE)
+        self._force += _SMOOTHING * (jolt - self._force)
         if self._force[2] >= GRAVITY * math.cos(self._limits.max_tilt):
             return None
         values = {

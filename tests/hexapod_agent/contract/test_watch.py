@@ -91,3 +91,14 @@ def test_flipped_gravity_is_named_within_half_a_second_and_a_jolt_is_not() -> No
     for _ in range(200):
         last = watched.check(imu())
     assert last is None
+
+
+@pytest.mark.parametrize('number', [1e300, -1e300, 1e-320])
+def test_wild_numbers_are_survived_and_forgotten_within_seconds(number: float) -> None:
+    watched = watch('imu/data')
+    wild = imu(z=number, w=number)
+    wild.orientation.x = -number
+    assert watched.check(wild).kind == 'bad_quaternion'
+    for _ in range(120):
+        last = watched.check(imu())
+    assert last is None
