@@ -48,7 +48,8 @@ class Channel:
         device: What yields it on a physical robot.
         centers: Value that is observed as 0, for each reading, in its unit; empty for zeros.
         limits: Largest magnitude that a working device gives in walking, for each reading, in its
-            unit; what lies beyond is in another unit. Empty if nothing measures the channel.
+            unit; what lies beyond is in another unit. Infinite where the norm tells, and empty if
+            nothing measures the channel.
         frames: Frame of each topic; empty if its values have no axes, as joint angles.
     """
 
@@ -112,7 +113,7 @@ CHANNELS = (
     Channel(
         'C', 'body orientation', ('imu/data',), 'sensor_msgs/msg/Imu',
         ('orientation',), (4,), ('1',), (1.0,), 'IMU with fusion',
-        limits=(2.0,), frames=(IMU_FRAME,),
+        limits=(math.inf,), frames=(IMU_FRAME,),
     ),
     Channel(
         'D', 'body angular velocity', ('imu/data_raw',), 'sensor_msgs/msg/Imu',

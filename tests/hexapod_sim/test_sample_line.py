@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 from hexapod_sim.sample_line import SampleLine, Timing
 from hypothesis import given, settings
@@ -50,7 +52,7 @@ def test_the_share_of_lost_samples_is_the_dropout(dropout: float, seed: int) -> 
 def test_a_lower_rate_leaves_samples_out_evenly(rate: float, count: int) -> None:
     came = [stamp for stamp, _ in flat(delivered(Timing(rate=rate)))]
     assert abs(len(came) - count) <= 1
-    steps = [(b - a) // PERIOD for a, b in zip(came, came[1:], strict=False)]
+    steps = [(b - a) // PERIOD for a, b in pairwise(came)]
     assert max(steps) - min(steps) <= 1
 
 
