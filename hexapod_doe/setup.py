@@ -30,6 +30,8 @@ setup(
             'recorder_node = hexapod_doe.recorder_node:main',
             'player_node = hexapod_doe.player_node:main',
             'plan = hexapod_doe.plan:main',
+            'run_case = hexapod_doe.run_case:main',
+            'run_fleet = hexapod_doe.run_fleet:main',
             'analyze = hexapod_doe.analyze:main',
             'follow_report = hexapod_doe.follow_report:main',
             'rescore = hexapod_doe.rescore:main',

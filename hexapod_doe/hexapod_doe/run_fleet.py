@@ -1,0 +1,139 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Command line: train the rows of a plan that are due, many at a time, in this one process."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import torch
+from hexapod_agent.checkpoint import CheckpointError
+from hexapod_agent.config import AgentConfig, ConfigError
+from hexapod_agent.fleet.crew import Crew
+from hexapod_agent.fleet.fleet import Fleet
+from hexapod_agent.fleet.learners import Learners, SeparateLearners
+from hexapod_agent.fleet.robots import Robots
+from hexapod_agent.fleet.stacked import StackedLearners
+from hexapod_agent.observation import ObservationSpec
+
+from hexapod_doe.campaigns.campaign import PLAN_FILE, Campaign
+from hexapod_doe.campaigns.fleet_campaign import FleetCampaign
+from hexapod_doe.designs.plan_file import PlanError
+from hexapod_doe.errors import BagError
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Return 0 if every run is done, 1 if some failed, 2 after an error, 130 if interrupted."""
+    args = _parser().parse_args(arguments)
+    try:
+        return _run(args)
+    except (BagError, CheckpointError, ConfigError, PlanError, FileNotFoundError) as error:
+        print(f'run_fleet: {error}', file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print('run_fleet: interrupted; the same command goes on', file=sys.stderr)
+        return 130
+
+
+def build_fleet(
+    config: AgentConfig, letters: Sequence[str], slots: int, crew: Crew, device: str
+) -> Fleet:
+    """Make a fleet for runs with such sets of observations.
+
+    On the CPU each learner computes apart and learns, to the last bit, what it learns alone. On
+    any other device all learners are one stack.
+    """
+    learners: Learners = SeparateLearners(crew)
+    if not is_cpu(device):
+        widest = max(ObservationSpec(each).size for each in letters)
+        learners = StackedLearners(config, widest, slots, crew, device)
+    return Fleet(Robots(config, slots), learners, crew, slots)
+
+
+def is_cpu(device: str) -> bool:
+    """Whether a device is the processor, where learners compute apart."""
+    return torch.device(device).type == 'cpu'
+
+
+def _run(args: argparse.Namespace) -> int:
+    config = AgentConfig.load(args.hyperparameters)
+    campaign = Campaign.open(_plan_in(args.plan, args.out), attempts=1)
+    episodes = args.episodes or config.training.episodes
+    due = [row.observations for row in campaign.rows if row.run_id not in campaign.done]
+    if due:
+        slots = min(args.slots or (args.threads if is_cpu(args.device) else len(due)), len(due))
+        with (
+            Crew(args.threads) as crew,
+            FleetCampaign(campaign, config, episodes, args.device) as runs,
+        ):
+            build_fleet(config, due, slots, crew, args.device).train(runs.runs())
+    print(f'{len(campaign.done)} of {len(campaign.rows)} runs are in {campaign.directory}')
+    return 1 if campaign.failed else 0
+
+
+def _plan_in(plan: Path, out: Path | None) -> Path:
+    """Return the plan in the campaign's folder, put there if need be.
+
+    Raises:
+        PlanError: the folder holds another plan.
+    """
+    if out is None or out.resolve() == plan.resolve().parent:
+        return plan
+    there = out / PLAN_FILE
+    if not there.exists():
+        out.mkdir(parents=True, exist_ok=True)
+        for suffix in ('.csv', '.json'):  # the rows, and how they were made
+            if plan.with_suffix(suffix).is_file():
+                shutil.copyfile(plan.with_suffix(suffix), there.with_suffix(suffix))
+    if there.read_bytes() != plan.read_bytes():
+        raise PlanError(f'{there}: another plan than {plan}, expected the same or none')
+    return there
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog='run_fleet', description=__doc__)
+    parser.add_argument('--plan', type=Path, required=True, help='plan.csv of the campaign')
+    parser.add_argument('--out', type=Path, help="the campaign's folder; default that of the plan")
+    parser.add_argument('--episodes', type=_count, help='of a training; default of article.yaml')
+    parser.add_argument(
+        '--hyperparameters', type=Path, help='YAML file of changes to article.yaml'
+    )
+    parser.add_argument(
+        '--slots', type=_count,
+        help='runs at a time; default one per thread on the CPU, all rows on another device',
+    )  # fmt: skip
+    parser.add_argument(
+        '--threads', type=_count, default=os.cpu_count() or 1, help='default one per core'
+    )
+    parser.add_argument(
+        '--device', type=_device, default='cpu', help="where the networks are, such as 'cuda'"
+    )
+    return parser
+
+
+def _count(text: str) -> int:
+    """Parse a positive whole number."""
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f'{text}, expected at least 1')
+    return value
+
+
+def _device(text: str) -> str:
+    """Check that torch can compute on a device."""
+    try:
+        torch.zeros(1, device=text)
+    except (RuntimeError, AssertionError) as error:
+        first = str(error).splitlines()[0]
+        raise argparse.ArgumentTypeError(f'{text!r} cannot be used: {first}') from error
+    return text
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,162 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The command line `run_fleet`: a campaign's bags, going on after a crash, and what it refuses."""
+
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+import yaml
+from hexapod_agent.config import AgentConfig
+from hexapod_agent.env import HexapodLine
+from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.train import train_episode
+from hexapod_agent.training import Trainer
+from hexapod_doe.bags.digest import digest
+from hexapod_doe.bags.run_record import find_bags, read_run
+from hexapod_doe.bags.verify import verify
+from hexapod_doe.campaigns.campaign import Campaign
+
+from hexapod_agent import checkpoint
+from hexapod_doe import plan, run_fleet
+
+EPISODES = 5
+SMALL = {
+    'task': {'time_limit_steps': 40},
+    'actor': {'hidden': [16, 12]},
+    'critic': {'hidden': [16, 12]},
+    'ddpg': {'batch_size': 16, 'buffer_size': 5000},
+    'training': {'checkpoint_every': 2, 'window': 2},
+}
+
+
+@pytest.fixture(scope='module')
+def hyperparameters(tmp_path_factory) -> Path:
+    path = tmp_path_factory.mktemp('fleet') / 'small.yaml'
+    path.write_text(yaml.safe_dump(SMALL))
+    return path
+
+
+@pytest.fixture(scope='module')
+def plan_file(hyperparameters) -> Path:
+    """Four rows: half a factorial of three sensors."""
+    path = hyperparameters.with_name('plan.csv')
+    make = ['--generators', 'C=AB', '--factors', 'ABC', '--replicates', '1', '--seed', '1']
+    plan.main([*make, '--out', str(path)])
+    return path
+
+
+@pytest.fixture
+def arguments(hyperparameters, plan_file):
+    def make(out: Path, **options: object) -> list[str]:
+        given = {'plan': plan_file, 'out': out, 'hyperparameters': hyperparameters}
+        given |= {'episodes': EPISODES, 'threads': 2} | options
+        return [text for name, value in given.items() for text in (f'--{name}', str(value))]
+
+    return make
+
+
+@pytest.fixture(scope='module')
+def digests(tmp_path_factory, hyperparameters, plan_file) -> dict[str, str]:
+    """Digest of each bag of the undisturbed campaign, by run."""
+    out = tmp_path_factory.mktemp('whole')
+    options = ['--episodes', str(EPISODES), '--hyperparameters', str(hyperparameters)]
+    assert run_fleet.main(['--plan', str(plan_file), '--out', str(out), *options]) == 0
+    return campaign_digests(out)
+
+
+def campaign_digests(directory: Path) -> dict[str, str]:
+    return {bag.name: digest(bag) for bag in find_bags(directory)}
+
+
+def test_rows_equal_those_trained_alone(arguments, hyperparameters, tmp_path):
+    assert run_fleet.main(arguments(tmp_path, slots=3)) == 0
+    config = AgentConfig.load(hyperparameters)
+    rows = Campaign.open(tmp_path / 'plan.csv').rows
+    assert len(rows) == 4
+    for row in rows:
+        trainer = Trainer(ObservationSpec(row.observations), config, row.seed)
+        env = HexapodLine(row.observations, config)
+        alone = [train_episode(env, trainer) for _ in range(EPISODES)]
+        verify(row.bag)
+        record = read_run(row.bag)
+        assert record.metadata['observations'] == row.observations
+        assert record.metadata['case'] == row.metadata['case']
+        for name in ('episode_return', 'critic_loss', 'mean_q', 'steps', 'updates'):
+            expected = [getattr(summary, name) for summary in alone]
+            np.testing.assert_array_equal(record.episodes[name], expected)
+        agent = checkpoint.load(row.bag.parent / record.metadata['checkpoint']).agent
+        assert torch.equal(agent.actor_parameters.flat, trainer.agent.actor_parameters.flat)
+
+
+@pytest.mark.parametrize('slots', [1, 4])
+def test_bags_do_not_depend_on_the_number_of_slots(arguments, digests, tmp_path, slots):
+    assert run_fleet.main(arguments(tmp_path, slots=slots, threads=slots)) == 0
+    assert campaign_digests(tmp_path) == digests
+
+
+def test_a_stack_fills_the_same_campaign(arguments, tmp_path, monkeypatch):
+    # No accelerator is needed to compute as on one.
+    monkeypatch.setattr(run_fleet, 'is_cpu', lambda device: False)
+    assert run_fleet.main(arguments(tmp_path)) == 0
+    for bag in find_bags(tmp_path):
+        verify(bag)
+        assert len(read_run(bag).episodes) == EPISODES
+
+
+def test_killed_fleet_goes_on_to_the_same_bags(arguments, digests, tmp_path):
+    given = arguments(tmp_path, slots=2)
+    process = subprocess.Popen([sys.executable, '-m', 'hexapod_doe.run_fleet', *given])
+    # It dies in the middle of what follows its first checkpoint.
+    while process.poll() is None and not list(tmp_path.glob('runs/*.checkpoint.pt')):
+        time.sleep(0.01)
+    process.kill()
+    assert process.wait() == -signal.SIGKILL
+    assert run_fleet.main(given) == 0
+    assert campaign_digests(tmp_path) == digests
+    resumed = [read_run(bag).metadata.get('resumed') for bag in find_bags(tmp_path)]
+    assert any(resumed)
+    assert not list(tmp_path.glob('runs/*.checkpoint.pt'))
+
+
+def test_finished_campaign_is_left_as_it_is(arguments, tmp_path, capsys):
+    assert run_fleet.main(arguments(tmp_path, episodes=1)) == 0
+    before = {path: path.stat().st_mtime_ns for path in tmp_path.rglob('*.mcap')}
+    assert run_fleet.main(arguments(tmp_path, episodes=1)) == 0
+    assert before == {path: path.stat().st_mtime_ns for path in tmp_path.rglob('*.mcap')}
+    assert capsys.readouterr().out.endswith(f'4 of 4 runs are in {tmp_path}\n')
+
+
+def test_another_plan_in_the_folder_is_refused(arguments, tmp_path, capsys):
+    (tmp_path / 'plan.csv').write_text('another')
+    assert run_fleet.main(arguments(tmp_path)) == 2
+    assert 'another plan' in capsys.readouterr().err
+
+
+def test_checkpoint_of_other_hyperparameters_is_refused(arguments, tmp_path, capsys):
+    row = Campaign.open(Path(arguments(tmp_path)[1])).rows[0]
+    trainer = Trainer(ObservationSpec(row.observations), AgentConfig.load(), row.seed)
+    path = tmp_path / 'runs' / f'{row.run_id}.checkpoint.pt'
+    checkpoint.save(path, trainer, to_resume=True)
+    assert run_fleet.main(arguments(tmp_path)) == 2
+    assert 'other hyper-parameters' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ('options', 'message'),
+    [
+        ({'slots': 0}, 'expected at least 1'),
+        ({'device': 'abacus'}, "'abacus' cannot be used"),
+        ({'threads': 'many'}, 'threads'),
+    ],
+)
+def test_wrong_options_are_one_clear_error(arguments, tmp_path, capsys, options, message):
+    with pytest.raises(SystemExit):
+        run_fleet.main(arguments(tmp_path, **options))
+    assert message in capsys.readouterr().err
