@@ -55,8 +55,13 @@ def summary(analysis: Analysis) -> str:
 
 def _tables(args: argparse.Namespace) -> list[RunTable]:
     if args.bags:
-        return read_bags(args.bags, args.factors, args.response or DEFAULT_RESPONSE)
-    return [table for path in args.table for table in read_csv(path, args.response, args.factors)]
+        response = args.response or DEFAULT_RESPONSE
+        return read_bags(args.bags, args.factors, response, args.blocks)
+    return [
+        table
+        for path in args.table
+        for table in read_csv(path, args.response, args.factors, args.blocks or '')
+    ]
 
 
 def _options(args: argparse.Namespace) -> Options:

@@ -32,6 +32,12 @@ def build_parser() -> argparse.ArgumentParser:
         metavar='A,B,…',
         help='one-character columns; others are ignored',
     )
+    source.add_argument(
+        '--blocks',
+        metavar='NAME',
+        help='column, or key of the metadata of bags, whose differences are taken out, such as '
+        "seed; '' for none (default of bags: what the plan says)",
+    )
     model = parser.add_argument_group('model')
     terms = model.add_mutually_exclusive_group()
     terms.add_argument('--terms', metavar='A,B,AB', help='terms to fit; the constant is added')

@@ -18,6 +18,7 @@ from hexapod_doe.analysis.findings import (
     RankUncertainty,
     TwoPart,
 )
+from hexapod_doe.fitting.blocks import BlockTest
 from hexapod_doe.fitting.lenth import Lenth
 from hexapod_doe.fitting.pure_error import Curvature, LackOfFit
 from hexapod_doe.fitting.transform import Transform
@@ -44,6 +45,10 @@ class DesignSummary:
     replicates: tuple[int, int]
     """Fewest and most runs in a case."""
     centre_points: int
+    block_column: str
+    """What the runs are blocked by, such as `seed`; empty if by nothing."""
+    blocks: int
+    """How many blocks; 0 if none."""
     aliases: Mapping[str, str]
     """Each estimable term and its alias string."""
 
@@ -78,6 +83,8 @@ class Step:
     sse: float
     sst: float
     lack_of_fit: LackOfFit | None
+    blocks: BlockTest | None
+    """Whether the blocks differ; None without blocks."""
     rows: tuple[int, ...]
     """Index in `Analysis.table` of each row that was fitted."""
     response: tuple[float, ...]

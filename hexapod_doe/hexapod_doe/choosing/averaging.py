@@ -20,6 +20,7 @@ from hexapod_doe.analysis.findings import Averaging, Estimate
 from hexapod_doe.choosing.draws import interval_of
 from hexapod_doe.choosing.prediction import rank_descending
 from hexapod_doe.designs.terms import CONSTANT, order, terms_up_to
+from hexapod_doe.fitting.blocks import no_blocks, without_blocks
 from hexapod_doe.fitting.model import corners, labels, model_matrix, parents
 
 P_MAIN = 0.5
@@ -32,17 +33,22 @@ _SHOWN = 10
 class ModelSpace:
     """The models over some runs: their likelihood, their prior, and what they predict."""
 
-    def __init__(self, levels: pd.DataFrame, response: np.ndarray) -> None:
-        """Rotate the problem onto the columns of all terms."""
+    def __init__(
+        self, levels: pd.DataFrame, response: np.ndarray, blocks: np.ndarray | None = None
+    ) -> None:
+        """Rotate the problem onto the columns of all terms, free of blocks."""
         self.factors = ''.join(map(str, levels.columns))
         self.terms = terms_up_to(self.factors, 2)
         matrix = model_matrix(levels, [CONSTANT, *self.terms])
-        q, self.r = linalg.qr(matrix, mode='economic')
+        self.floor = 1e-12 * float(((response - response.mean()) ** 2).sum())
+        basis = no_blocks(len(response)) if blocks is None else blocks
+        response = without_blocks(response, basis)
+        q, self.r = linalg.qr(without_blocks(matrix, basis), mode='economic')
         self.rotated = q.T @ response
         rest = response - q @ self.rotated
         self.outside = float(rest @ rest)
         self.rows = len(response)
-        self.floor = 1e-12 * float(((response - response.mean()) ** 2).sum())
+        self.absorbed = basis.shape[1]
         columns = matrix[:, 1:]
         self.alike = np.abs(columns.T @ columns) > (columns**2).sum(axis=0) - 1e-6
         np.fill_diagonal(self.alike, False)
@@ -62,7 +68,7 @@ class ModelSpace:
 
     def _score(self, active: np.ndarray) -> float:
         size = int(active.sum()) + 1
-        if 2 * size > self.rows or (self.alike[np.ix_(active, active)]).any():
+        if 2 * size > self.rows - self.absorbed or (self.alike[np.ix_(active, active)]).any():
             return -np.inf
         _, sse, _ = self.solve(active)
         bic = self.rows * np.log(max(sse, self.floor) / self.rows) + size * np.log(self.rows)
@@ -92,6 +98,7 @@ def average(
     spread: Callable[[np.ndarray], np.ndarray],
     level: float,
     rng: np.random.Generator,
+    blocks: np.ndarray | None = None,
 ) -> Averaging:
     """Average the values of all combinations over the models.
 
@@ -101,8 +108,9 @@ def average(
         spread: Maps draws of the linear predictor to draws of the values (draws, 2^k).
         level: Confidence of the intervals.
         rng: For the sampler.
+        blocks: Basis of the differences between blocks (n, b), which every model has.
     """
-    space = ModelSpace(levels, response)
+    space = ModelSpace(levels, response, blocks)
     grid = corners(list(levels.columns))
     points = model_matrix(grid, [CONSTANT, *space.terms])
     visited: Counter[bytes] = Counter()
@@ -145,7 +153,7 @@ def _draw(
     space: ModelSpace, active: np.ndarray, points: np.ndarray, rng: np.random.Generator
 ) -> np.ndarray:
     coef, sse, inverse = space.solve(active)
-    s = np.sqrt(max(sse, space.floor) / rng.chisquare(space.rows - len(coef)))
+    s = np.sqrt(max(sse, space.floor) / rng.chisquare(space.rows - space.absorbed - len(coef)))
     drawn = coef + s * inverse @ rng.standard_normal(len(coef))
     return points[:, np.concatenate([[True], active])] @ drawn
 

@@ -41,7 +41,9 @@ def conclude(
     return Conclusions(
         rank_uncertainty=rank_uncertainty(outlook, options.level),
         attribution=attribute(table.levels, outlook.terms, outlook.coef, outlook.value, rng),
-        averaging=average(outlook.levels, outlook.response, outlook.spread, options.level, rng),
+        averaging=average(
+            outlook.levels, outlook.response, outlook.spread, options.level, rng, outlook.blocks
+        ),
         purchase=_purchase(table, outlook, options),
     )
 

@@ -55,6 +55,8 @@ class Outlook:
     levels: pd.DataFrame
     response: np.ndarray
     """The rows that the linear predictor was fitted to (n,)."""
+    blocks: np.ndarray
+    """Basis of the differences between their blocks (n, b)."""
     spread: Callable[[np.ndarray], np.ndarray]
     """Draws of the values from draws of the linear predictor (draws, 2^k)."""
 
@@ -89,6 +91,7 @@ def final_outlook(state: Pipeline, rng: np.random.Generator) -> Outlook:
         value=lambda eta: back(eta, transform),
         levels=state.levels,
         response=state.steps[-1].response,
+        blocks=state.blocks,
         spread=lambda eta: back_draws(eta, transform),
     )
 
@@ -99,7 +102,7 @@ def _unselected(state: Pipeline) -> Fit:
         return state.last
     last, before = state.steps[-1], state.steps[-2].fit
     terms = tuple(term for term in before.terms if order(term) <= 2)
-    return ols(state.levels, last.response, terms)
+    return ols(state.levels, last.response, terms, state.blocks)
 
 
 def _stated(fit: Fit, state: Pipeline, count: int, rng: np.random.Generator) -> Stated:
@@ -148,5 +151,6 @@ def two_part_outlook(selected: Parts, unselected: Parts, rng: np.random.Generato
         value=lambda eta: (1 - pi) * eta + pi * selected.failed.mean(),
         levels=selected.levels,
         response=selected.response,
+        blocks=selected.blocks,
         spread=lambda eta: unselected.draw(len(eta), rng).mixed_with(eta),
     )

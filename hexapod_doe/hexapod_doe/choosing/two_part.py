@@ -36,7 +36,8 @@ class Parts:
     """Responses of the failed runs."""
     levels: pd.DataFrame
     response: np.ndarray
-    """Levels and responses of the successful runs."""
+    blocks: np.ndarray
+    """Levels, responses and basis of block differences of the successful runs."""
 
     def point(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return P(failure), reward given success and expected reward of all 2^k (2^k,)."""
@@ -88,13 +89,16 @@ def fit_parts(table: RunTable, threshold: float) -> Parts | None:
     """Fit both parts without selection; None where there are too few failures or successes."""
     failed = table.values < threshold
     mains = independent_terms(table.levels, [CONSTANT, *table.factors])
-    success_terms = independent_terms(table.levels[~failed], estimable_terms(table.levels, 2))
-    while failed.sum() >= 2 and (~failed).sum() - len(success_terms) < 2:
+    blocks = table.block_basis(~failed)
+    wanted = estimable_terms(table.levels, 2)
+    success_terms = independent_terms(table.levels[~failed], wanted, blocks)
+    runs = (~failed).sum() - blocks.shape[1]
+    while failed.sum() >= 2 and runs - len(success_terms) < 2:
         highest = max(map(order, success_terms))
         if highest < 2:
             return None
         success_terms = tuple(term for term in success_terms if order(term) < highest)
-    if failed.sum() < 2 or (~failed).sum() - len(success_terms) < 2:
+    if failed.sum() < 2 or runs - len(success_terms) < 2:
         return None
     return _fit(table, failed, mains, success_terms)
 
@@ -113,7 +117,11 @@ def select_parts(table: RunTable, parts: Parts, threshold: float, alpha: float) 
         del terms[weakest]
         fit = firth(model_matrix(levels, terms), failed.astype(float))
     success, _ = eliminate(
-        levels[~failed], table.values[~failed], parts.success.terms, alpha=alpha
+        levels[~failed],
+        table.values[~failed],
+        parts.success.terms,
+        alpha=alpha,
+        blocks=parts.blocks,
     )
     return _fit(table, failed, tuple(terms), success)
 
@@ -122,14 +130,16 @@ def _fit(
     table: RunTable, failed: np.ndarray, failure_terms: Sequence[str], success: Sequence[str]
 ) -> Parts:
     levels, values = table.levels, table.values
+    blocks = table.block_basis(~failed)
     return Parts(
         factors=table.factors,
         failure_terms=tuple(failure_terms),
         failure=firth(model_matrix(levels, failure_terms), failed.astype(float)),
-        success=ols(levels[~failed], values[~failed], success),
+        success=ols(levels[~failed], values[~failed], success, blocks),
         failed=values[failed],
         levels=levels[~failed],
         response=values[~failed],
+        blocks=blocks,
     )
 
 

@@ -55,6 +55,11 @@ class PlanSettings:
     """What an augmenting plan adds to, and how; empty for a first plan."""
     confirmation: Confirmation = field(default_factory=Confirmation)
 
+    @property
+    def block_column(self) -> str:
+        """The column that tells the blocks of its runs apart; empty if there are none."""
+        return 'block' if self.blocks else 'seed' if self.common_seeds else ''
+
     def as_dict(self) -> dict[str, Any]:
         """Return plain types, with the confirmation rule in words."""
         mapping = asdict(self)

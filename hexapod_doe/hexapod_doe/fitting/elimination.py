@@ -11,6 +11,7 @@ import pandas as pd
 from scipy import linalg, stats
 
 from hexapod_doe.designs.terms import CONSTANT, contains, order, sort_key
+from hexapod_doe.fitting.blocks import no_blocks, without_blocks
 from hexapod_doe.fitting.model import independent_terms, model_matrix, parents, term_key
 
 
@@ -34,7 +35,13 @@ class _Reduced:
     outside: float
     """Sum of squares that no term of the largest model takes up."""
     rows: int
+    absorbed: int
+    """Degrees of freedom that the blocks take."""
     sst: float
+
+    def df_error(self, parameters: int) -> int:
+        """Return the degrees of freedom that a number of terms leaves."""
+        return self.rows - self.absorbed - parameters
 
     def sse_and_p(self, columns: list[int]) -> tuple[float, np.ndarray]:
         """Return the error sum of squares and the p-values of the model of some columns."""
@@ -43,13 +50,15 @@ class _Reduced:
         projected = q.T @ self.rotated
         rest = self.rotated - q @ projected
         sse = self.outside + float(rest @ rest)
-        df = self.rows - len(columns)
+        df = self.df_error(len(columns))
         with np.errstate(divide='ignore', invalid='ignore'):
             t = (inverse @ projected) / np.sqrt(sse / df * (inverse**2).sum(axis=1))
         return sse, np.nan_to_num(2 * stats.t.sf(np.abs(t), df), nan=1.0)
 
 
-def with_parents(levels: pd.DataFrame, terms: Sequence[str]) -> tuple[str, ...]:
+def with_parents(
+    levels: pd.DataFrame, terms: Sequence[str], blocks: np.ndarray | None = None
+) -> tuple[str, ...]:
     """Add the parents that hierarchy demands, as far as the runs can estimate them too."""
     wanted = set(terms)
     queue = list(terms)
@@ -58,7 +67,7 @@ def with_parents(levels: pd.DataFrame, terms: Sequence[str]) -> tuple[str, ...]:
         wanted |= missing
         queue += missing
     added = sorted(wanted - set(terms), key=sort_key)
-    return tuple(sorted(independent_terms(levels, [*terms, *added]), key=term_key))
+    return tuple(sorted(independent_terms(levels, [*terms, *added], blocks), key=term_key))
 
 
 def eliminate(
@@ -68,6 +77,7 @@ def eliminate(
     alpha: float = 0.05,
     hierarchy: bool = True,
     protected: Collection[str] = (),
+    blocks: np.ndarray | None = None,
 ) -> tuple[tuple[str, ...], tuple[Dropped, ...]]:
     """Drop the term of the largest p until none exceeds alpha.
 
@@ -82,12 +92,14 @@ def eliminate(
         alpha: Significance level.
         hierarchy: Keep parents.
         protected: Terms that are never dropped.
+        blocks: Basis of the differences between blocks (n, b), which are never dropped.
 
     Returns:
         The terms kept and the trace.
     """
     kept = list(terms)
-    problem = _rotate(model_matrix(levels, kept), response)
+    basis = no_blocks(len(levels)) if blocks is None else blocks
+    problem = _rotate(model_matrix(levels, kept), response, basis)
     index = {term: position for position, term in enumerate(kept)}
     sse, p = problem.sse_and_p([index[term] for term in kept])
     trace: list[Dropped] = []
@@ -102,12 +114,13 @@ def eliminate(
         trace.append(_dropped(worst, float(values[worst]), sse, len(kept), problem))
 
 
-def _rotate(matrix: np.ndarray, response: np.ndarray) -> _Reduced:
-    q, r = linalg.qr(matrix, mode='economic')
-    rotated = q.T @ response
-    rest = response - q @ rotated
+def _rotate(matrix: np.ndarray, response: np.ndarray, basis: np.ndarray) -> _Reduced:
+    q, r = linalg.qr(without_blocks(matrix, basis), mode='economic')
+    free = without_blocks(response, basis)
+    rotated = q.T @ free
+    rest = free - q @ rotated
     sst = float(((response - response.mean()) ** 2).sum())
-    return _Reduced(r, rotated, float(rest @ rest), len(response), sst)
+    return _Reduced(r, rotated, float(rest @ rest), len(response), basis.shape[1], sst)
 
 
 def _droppable(
@@ -123,7 +136,7 @@ def _droppable(
 
 
 def _dropped(term: str, p: float, sse: float, parameters: int, problem: _Reduced) -> Dropped:
-    df = problem.rows - parameters
+    df = problem.df_error(parameters)
     r2 = 1 - sse / problem.sst if problem.sst > 0 else None
     adjusted = None if r2 is None else 1 - (sse / df) / (problem.sst / (problem.rows - 1))
     return Dropped(term, p, float(np.sqrt(sse / df)), r2, adjusted)

@@ -43,7 +43,8 @@ def estimate(
         level: Confidence of the intervals.
         rng: For the resamples.
     """
-    terms = estimable_terms(table.levels, 2)
+    everything = np.ones(len(table.rows), dtype=bool)
+    terms = estimable_terms(table.levels, 2, table.block_basis(everything))
     inverse = np.linalg.pinv(model_matrix(table.levels, terms))
     response = pseudo_values(item, table.values, table.rows['case'])
     grid = corners(table.factors)

@@ -17,6 +17,7 @@ from hexapod_doe.designs import terms as words
 from hexapod_doe.designs.aliases import alias_text
 from hexapod_doe.designs.terms import CONSTANT, letters_on, normalise, order, sort_key, terms_up_to
 from hexapod_doe.errors import AnalysisError
+from hexapod_doe.fitting.blocks import no_blocks
 
 CURVATURE = 'CP'
 """The indicator of a centre point as a term of the model."""
@@ -90,10 +91,20 @@ def labels(levels: pd.DataFrame) -> list[str]:
     return [letters_on(row, factors) or EMPTY_SET for row in levels.to_numpy(float)]
 
 
-def independent_terms(levels: pd.DataFrame, terms: Sequence[str]) -> tuple[str, ...]:
-    """Return the terms, taken in order, whose columns the ones before them don't explain."""
-    columns = model_matrix(levels.drop_duplicates(), terms)
-    basis = np.empty((len(columns), 0))
+def independent_terms(
+    levels: pd.DataFrame, terms: Sequence[str], blocks: np.ndarray | None = None
+) -> tuple[str, ...]:
+    """Return the terms, taken in order, whose columns the ones before them don't explain.
+
+    Args:
+        levels: Coded levels of the runs (n rows).
+        terms: Terms to try.
+        blocks: Basis of the differences between blocks (n, b), which come before every term.
+    """
+    if blocks is None or blocks.shape[1] == 0:
+        levels = levels.drop_duplicates()  # runs of one case say nothing new
+        blocks = no_blocks(len(levels))
+    columns, basis = model_matrix(levels, terms), blocks
     kept = []
     for term, vector in zip(terms, columns.T, strict=True):
         if basis.shape[1] == len(columns):
@@ -121,7 +132,9 @@ def explain_dependent(levels: pd.DataFrame, terms: Sequence[str]) -> dict[str, t
     }
 
 
-def check_rank(levels: pd.DataFrame, terms: Sequence[str]) -> None:
+def check_rank(
+    levels: pd.DataFrame, terms: Sequence[str], blocks: np.ndarray | None = None
+) -> None:
     """Refuse a model whose columns are dependent.
 
     Raises:
@@ -134,19 +147,28 @@ def check_rank(levels: pd.DataFrame, terms: Sequence[str]) -> None:
             f'the runs cannot tell these terms apart: {pairs}; '
             f'{len(terms)} terms have rank {len(terms) - len(explained)}: name one of each'
         )
+    free = independent_terms(levels, terms, blocks)
+    hidden = [term for term in terms if term not in free]
+    if hidden:
+        raise AliasedTermsError(
+            f'the runs cannot tell {", ".join(hidden)} from the differences between blocks: '
+            'leave them out'
+        )
 
 
-def estimable_terms(levels: pd.DataFrame, max_order: int | None = None) -> tuple[str, ...]:
+def estimable_terms(
+    levels: pd.DataFrame, max_order: int | None = None, blocks: np.ndarray | None = None
+) -> tuple[str, ...]:
     """Return the representatives that the runs can estimate: lowest order, then alphabet.
 
     With every order allowed this is the saturated model of the distinct cases. Curvature is
-    added when there are centre points.
+    added when there are centre points. Terms that blocks hide are left out.
     """
     factors = ''.join(levels.columns)
     wanted = [CONSTANT, *terms_up_to(factors, min(max_order or len(factors), len(factors)))]
     if (levels == 0).all(axis=1).any() and is_curvature(CURVATURE, factors):
         wanted.insert(1, CURVATURE)
-    return tuple(sorted(independent_terms(levels, wanted), key=term_key))
+    return tuple(sorted(independent_terms(levels, wanted, blocks), key=term_key))
 
 
 def alias_strings(levels: pd.DataFrame, terms: Iterable[str]) -> dict[str, str]:

@@ -57,12 +57,17 @@ class Pipeline:
         """Levels of the rows that are fitted."""
         return self.table.levels[self.kept]
 
+    @property
+    def blocks(self) -> np.ndarray:
+        """Basis of the differences between the blocks of the rows that are fitted (n, b)."""
+        return self.table.block_basis(self.kept)
+
     def fit(self, name: str, description: str, terms: tuple[str, ...]) -> None:
         """Fit some terms to the kept rows and add the step."""
         response = self.table.values[self.kept]
         if self.transform is not None:
             response = self.transform.forward(response)
-        fit = ols(self.levels, response, terms)
+        fit = ols(self.levels, response, terms, self.blocks)
         rows = np.flatnonzero(self.kept)
         step = FittedStep(name, description, fit, rows, response, self.transform is not None)
         self.steps.append(step)
@@ -97,7 +102,13 @@ def _initial(state: Pipeline) -> None:
         terms = parse_terms(options.terms, table.factors)
         description = f'the {len(terms)} terms named'
     else:
-        terms = estimable_terms(table.levels, options.max_order)
+        terms = estimable_terms(table.levels, options.max_order, state.blocks)
+        hidden = [t for t in estimable_terms(table.levels, options.max_order) if t not in terms]
+        if hidden:
+            state.caveats.append(
+                f'{", ".join(hidden)} cannot be told from the differences between blocks and is '
+                'left out.'
+            )
         description = f'all {len(terms)} terms that the cases can estimate'
         if options.max_order:
             description += f' up to order {options.max_order}'
@@ -131,7 +142,8 @@ def _reduce(state: Pipeline) -> None:
     saturated = state.last.terms
     mains = tuple(term for term in saturated if order(term) <= 1 and term != CURVATURE)
     beyond = () if state.lenth is None else state.lenth.clearly_active
-    terms = with_parents(state.levels, tuple(dict.fromkeys((*mains, *beyond))))
+    wanted = tuple(dict.fromkeys((*mains, *beyond)))
+    terms = with_parents(state.levels, wanted, state.blocks)
     if len(terms) > 0.75 * len(saturated):
         terms = mains
     if len(terms) >= len(saturated):
@@ -151,7 +163,7 @@ def _reduce(state: Pipeline) -> None:
 
 def _transform(state: Pipeline) -> None:
     response = state.table.values[state.kept]
-    matrix = model_matrix(state.levels, state.last.terms)
+    matrix = np.column_stack([state.blocks, model_matrix(state.levels, state.last.terms)])
     state.transform = choose_transform(state.options.transform, response, matrix)
     if state.transform is None:
         return
@@ -168,8 +180,11 @@ def _transform(state: Pipeline) -> None:
 def _eliminate(state: Pipeline) -> None:
     options, terms = state.options, state.last.terms
     if options.hierarchy:
-        terms = with_parents(state.levels, terms)
-        if len(terms) > len(state.last.terms) and len(terms) < int(state.kept.sum()):
+        terms = with_parents(state.levels, terms, state.blocks)
+        if (
+            len(terms) > len(state.last.terms)
+            and len(terms) < len(state.blocks) - state.blocks.shape[1]
+        ):
             added = ', '.join(sorted(set(terms) - set(state.last.terms)))
             state.caveats.append(f'{added} added before elimination to keep the hierarchy.')
         else:
@@ -182,6 +197,7 @@ def _eliminate(state: Pipeline) -> None:
         options.alpha,
         options.hierarchy,
         mains if options.keep_main_effects else (),
+        state.blocks,
     )
     if kept == (CONSTANT,):
         state.caveats.append(

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from scipy import stats
+from scipy import linalg, stats
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Curvature:
 
 
 def lack_of_fit(
-    sse: float, response: np.ndarray, case: np.ndarray, parameters: int
+    sse: float, response: np.ndarray, case: np.ndarray, parameters: int, blocks: np.ndarray
 ) -> LackOfFit | None:
     """Return the lack-of-fit test, or None without repeated runs or without spare case.
 
@@ -47,18 +47,27 @@ def lack_of_fit(
         response: Response of the rows (n,).
         case: Number of each row's case, from 0 (n,).
         parameters: Terms of the model.
+        blocks: Basis of the differences between blocks (n, b); pure error is free of them.
     """
-    count = np.bincount(case)
-    df_pure, df_lack = len(response) - len(count), len(count) - parameters
+    within = [_within(column, case) for column in (response, *blocks.T)]
+    basis = linalg.orth(np.column_stack(within[1:])) if len(within) > 1 else blocks
+    rest = within[0] - basis @ (basis.T @ within[0])
+    cases = int(case.max()) + 1
+    df_pure = len(response) - cases - basis.shape[1]
+    df_lack = cases + basis.shape[1] - blocks.shape[1] - parameters
     if df_pure < 1 or df_lack < 1:
         return None
-    means = np.bincount(case, weights=response) / count
-    pure = float(((response - means[case]) ** 2).sum())
+    pure = float(rest @ rest)
     lack = max(sse - pure, 0.0)
     if pure <= 0:
         return None
     f = (lack / df_lack) / (pure / df_pure)
     return LackOfFit(lack, df_lack, pure, df_pure, f, float(stats.f.sf(f, df_lack, df_pure)))
+
+
+def _within(values: np.ndarray, case: np.ndarray) -> np.ndarray:
+    """Return the values less the mean of their case."""
+    return values - (np.bincount(case, weights=values) / np.bincount(case))[case]
 
 
 def curvature(levels: pd.DataFrame, response: np.ndarray) -> Curvature | None:
@@ -70,9 +79,8 @@ def curvature(levels: pd.DataFrame, response: np.ndarray) -> Curvature | None:
     if not centre.any() or centre.all():
         return None
     case = levels.groupby(list(levels.columns), sort=False).ngroup().to_numpy()
-    means = np.bincount(case, weights=response) / np.bincount(case)
-    pure = float(((response - means[case]) ** 2).sum())
-    df = len(response) - len(means)
+    pure = float((_within(response, case) ** 2).sum())
+    df = len(response) - (int(case.max()) + 1)
     difference = float(response[~centre].mean() - response[centre].mean())
     ss = difference**2 * centre.sum() * (~centre).sum() / len(centre)
     f = ss / (pure / df) if df and pure > 0 else None

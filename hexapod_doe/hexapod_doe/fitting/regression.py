@@ -15,6 +15,7 @@ import pandas as pd
 from scipy import linalg, stats
 
 from hexapod_doe.errors import AnalysisError
+from hexapod_doe.fitting.blocks import BlockTest, block_test, no_blocks, without_blocks
 from hexapod_doe.fitting.model import check_rank, model_matrix
 from hexapod_doe.fitting.pure_error import LackOfFit, lack_of_fit
 
@@ -26,8 +27,9 @@ class Fit:
     """A least-squares fit; what does not exist (say, s of a saturated fit) is None.
 
     Arrays follow `terms` (p) or the rows (n). `r_inverse` (p, p) holds R⁻¹ of X = QR, so that
-    Cov(b) = s² R⁻¹R⁻ᵀ. `press_cases` leaves out all runs of a case at once: it is the honest
-    one for combinations that were never run.
+    Cov(b) = s² R⁻¹R⁻ᵀ; differences between blocks are projected out of X before. `press_cases`
+    leaves out all runs of a case at once: it is the honest one for combinations that were never
+    run.
     """
 
     terms: tuple[str, ...]
@@ -41,6 +43,7 @@ class Fit:
     press: float | None
     press_cases: float | None
     lack_of_fit: LackOfFit | None
+    blocks: BlockTest | None = None
 
     @property
     def n(self) -> int:
@@ -50,7 +53,7 @@ class Fit:
     @property
     def df_error(self) -> int:
         """Degrees of freedom of the error."""
-        return self.n - len(self.terms)
+        return self.n - len(self.terms) - (self.blocks.df if self.blocks else 0)
 
     @property
     def s(self) -> float | None:
@@ -116,22 +119,35 @@ class Fit:
         return ((points @ self.r_inverse) ** 2).sum(axis=1)
 
 
-def ols(levels: pd.DataFrame, response: np.ndarray, terms: Sequence[str]) -> Fit:
+def ols(
+    levels: pd.DataFrame,
+    response: np.ndarray,
+    terms: Sequence[str],
+    blocks: np.ndarray | None = None,
+) -> Fit:
     """Fit a response (n,) on coded levels (n rows) by least squares.
 
+    Args:
+        levels: Coded levels of the runs.
+        response: Their response (n,).
+        terms: Terms of the model.
+        blocks: Basis of the differences between blocks (n, b), see `block_basis`.
+
     Raises:
-        AliasedTermsError: the runs cannot tell the terms apart.
+        AliasedTermsError: the runs cannot tell the terms apart, or from the blocks.
         AnalysisError: there are fewer rows than terms.
     """
-    check_rank(levels, terms)
+    basis = no_blocks(len(levels)) if blocks is None else blocks
+    check_rank(levels, terms, basis)
     matrix = model_matrix(levels, terms)
-    if len(matrix) < len(terms):
+    if len(matrix) < len(terms) + basis.shape[1]:
         raise AnalysisError(f'{len(terms)} terms need as many runs, the table has {len(matrix)}')
-    q, r = linalg.qr(matrix, mode='economic')
+    q, r = linalg.qr(without_blocks(matrix, basis), mode='economic')
     r_inverse = linalg.solve_triangular(r, np.eye(len(r)))
-    fitted = q @ (q.T @ response)
+    whole = np.column_stack([basis, q])
+    fitted = whole @ (whole.T @ response)
     residuals = response - fitted
-    leverage = (q**2).sum(axis=1)
+    leverage = (whole**2).sum(axis=1)
     cases = levels.groupby(list(levels.columns), sort=False).ngroup().to_numpy()
     sse = float(residuals @ residuals)
     return Fit(
@@ -144,9 +160,19 @@ def ols(levels: pd.DataFrame, response: np.ndarray, terms: Sequence[str]) -> Fit
         sse=sse,
         sst=float(((response - response.mean()) ** 2).sum()),
         press=_press(residuals, leverage),
-        press_cases=_press_cases(residuals, leverage, cases),
-        lack_of_fit=lack_of_fit(sse, response, cases, len(terms)),
+        press_cases=_press_cases(residuals, whole, cases),
+        lack_of_fit=lack_of_fit(sse, response, cases, len(terms), basis),
+        blocks=_block_test(matrix, response, basis, sse),
     )
+
+
+def _block_test(
+    matrix: np.ndarray, response: np.ndarray, basis: np.ndarray, sse: float
+) -> BlockTest | None:
+    q = linalg.qr(matrix, mode='economic')[0]
+    rest = response - q @ (q.T @ response)
+    df_error = len(matrix) - matrix.shape[1] - basis.shape[1]
+    return block_test(sse, df_error, float(rest @ rest), basis.shape[1])
 
 
 def _press(residuals: np.ndarray, leverage: np.ndarray) -> float | None:
@@ -156,15 +182,17 @@ def _press(residuals: np.ndarray, leverage: np.ndarray) -> float | None:
     return float(((residuals / (1 - leverage)) ** 2).sum())
 
 
-def _press_cases(residuals: np.ndarray, leverage: np.ndarray, cases: np.ndarray) -> float | None:
-    """Return PRESS leaving out all m rows of a case at once.
+def _press_cases(residuals: np.ndarray, q: np.ndarray, cases: np.ndarray) -> float | None:
+    """Return PRESS leaving out all rows of a case at once.
 
-    They share x₀, so that their block of the hat matrix is h·11' and the deleted residuals are
-    eᵢ + h·Σe/(1−m·h).
+    The deleted residuals of rows c are (I − H)⁻¹e with their block H = QQ' of the hat matrix.
     """
-    runs = np.bincount(cases)[cases]
-    if (runs * leverage > 1 - _SATURATED).any():
-        return None
-    totals = np.bincount(cases, weights=residuals)[cases]
-    deleted = residuals + leverage * totals / (1 - runs * leverage)
-    return float((deleted**2).sum())
+    total = 0.0
+    for number in range(cases.max() + 1):
+        rows = np.flatnonzero(cases == number)
+        values, vectors = linalg.eigh(q[rows] @ q[rows].T)
+        if values[-1] > 1 - _SATURATED:
+            return None
+        deleted = (vectors.T @ residuals[rows]) / (1 - values)
+        total += float(deleted @ deleted)
+    return total

@@ -46,6 +46,7 @@ def step_record(step: FittedStep, aliases: Mapping[str, str]) -> Step:
         sse=fit.sse,
         sst=fit.sst,
         lack_of_fit=fit.lack_of_fit,
+        blocks=fit.blocks,
         rows=tuple(map(int, step.rows)),
         response=_tuple(step.response),
         fitted=_tuple(fit.fitted),

@@ -87,12 +87,17 @@ def checks(analysis: Analysis) -> Table | None:
     """Tabulate the tests of the model as a whole: lack of fit, curvature, Lenth's margins."""
     rows: list[tuple[str, str, str, float | None]] = []
     lack, curvature, lenth = analysis.final.lack_of_fit, analysis.curvature, analysis.lenth
+    blocks = analysis.final.blocks
     if lack is not None:
         test = f'F({lack.df_lack_of_fit}, {lack.df_pure_error}) = {number(lack.f)}'
         rows.append(('lack of fit', 'cases against the spread of their runs', test, lack.p))
     if curvature is not None:
         test = f'difference {signed(curvature.difference)}'
         rows.append(('curvature', 'centre points against the other runs', test, curvature.p))
+    if blocks is not None and blocks.f is not None:
+        test = f'F({blocks.df}, {analysis.final.df_error}) = {number(blocks.f)}'
+        what = f'differences by {analysis.design.block_column}, taken out of the model'
+        rows.append(('blocks', what, test, blocks.p))
     if lenth is not None:
         test = f'ME {number(lenth.margin)}, SME {number(lenth.simultaneous_margin)}'
         rows.append(('Lenth’s margins', f'pseudo standard error {number(lenth.pse)}', test, None))

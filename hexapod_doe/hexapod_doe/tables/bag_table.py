@@ -17,7 +17,15 @@ from hexapod_doe.designs.plan_types import Confirmation, PlanSettings
 from hexapod_doe.errors import BagError
 from hexapod_doe.fitting.model import EMPTY_SET
 from hexapod_doe.tables.bag_response import DEFAULT_RESPONSE, response_of
-from hexapod_doe.tables.table import CURVE_COLUMNS, RESPONSE, RunTable, TableError, build_rows
+from hexapod_doe.tables.table import (
+    BLOCK,
+    CURVE_COLUMNS,
+    RESPONSE,
+    RunTable,
+    TableError,
+    block_fault,
+    build_rows,
+)
 
 _DESIGN_ROW = ('case', 'replicate', 'RunOrder')
 
@@ -28,6 +36,7 @@ class _Group:
 
     title: str
     design: str
+    blocks: str
     bags: list[Path] = field(default_factory=list)
 
 
@@ -35,6 +44,7 @@ def read_bags(
     paths: Sequence[Path],
     factors: Sequence[str] | None = None,
     response: str = DEFAULT_RESPONSE,
+    blocks: str | None = None,
 ) -> list[RunTable]:
     """Read all complete bags below some directories; each campaign is one table.
 
@@ -44,9 +54,11 @@ def read_bags(
         paths: Directories of campaigns or bags.
         factors: Letters of the observations that may be on; by default all.
         response: What a run is judged by, see `bag_response`.
+        blocks: Key of the metadata that tells the blocks apart, such as `seed`; empty for none,
+            None for what the campaign's plan says, if there are two or more yet.
 
     Raises:
-        BagError: A directory is missing or a bag cannot be read.
+        BagError: A directory is missing, a bag cannot be read or its metadata lack a key.
         AnalysisError: There is no complete bag or no such response, or the runs cannot be
             analysed.
     """
@@ -58,7 +70,7 @@ def read_bags(
     caveats = (f'{skipped} bags of unfinished runs are left out.',) if skipped else ()
     names = tuple(factors or LETTERS)
     source = _names(paths)
-    return [_table(group, source, caveats, names, response) for group in _groups(complete)]
+    return [_table(group, source, caveats, names, response, blocks) for group in _groups(complete)]
 
 
 def plan_rule(paths: Sequence[Path]) -> Confirmation:
@@ -75,7 +87,7 @@ def bag_responses(path: Path, response: str = DEFAULT_RESPONSE) -> dict[str, lis
     responses: dict[str, list[float]] = {}
     for bag in filter(is_complete, find_bags(path)):
         run = read_run(bag)
-        label = ''.join(sorted(_observations(run))) or EMPTY_SET
+        label = ''.join(sorted(_known(run, 'observations'))) or EMPTY_SET
         responses.setdefault(label, []).append(response_of(run, response))
     return responses
 
@@ -104,7 +116,8 @@ def _groups(bags: Iterable[Path]) -> list[_Group]:
         settings = _settings(campaign)
         if settings is None or not settings.follows or not groups:
             title = campaign.name if campaign else found[0].parent.resolve().name
-            groups.append(_Group(title, settings.design if settings else ''))
+            design, blocks = (settings.design, settings.block_column) if settings else ('', '')
+            groups.append(_Group(title, design, blocks))
         elif settings is not None:
             groups[-1].design = settings.design
         groups[-1].bags += found
@@ -117,9 +130,11 @@ def _table(
     caveats: tuple[str, ...],
     factors: tuple[str, ...],
     response: str,
+    blocks: str | None,
 ) -> RunTable:
     runs = [read_run(bag) for bag in group.bags]
-    raw = pd.DataFrame([_row(run, factors, response) for run in runs])
+    blocks = _planned_blocks(group, runs) if blocks is None else blocks
+    raw = pd.DataFrame([_row(run, factors, response, blocks) for run in runs])
     rows, found = build_rows(raw.dropna(axis=1), factors)
     return RunTable(
         title=group.title,
@@ -129,25 +144,34 @@ def _table(
         rows=rows,
         caveats=(*caveats, *found),
         design=group.design,
+        block_column=blocks,
         factor_names={channel.letter: channel.name for channel in CHANNELS if channel.letter},
         curves=_curves(runs, rows),
     )
 
 
-def _row(run: RunRecord, factors: Sequence[str], response: str) -> dict[str, object]:
-    letters = _observations(run)
+def _planned_blocks(group: _Group, runs: Sequence[RunRecord]) -> str:
+    """Return what the plan blocks the runs by, as far as those that there are allow it."""
+    sets = pd.Series([_known(run, 'observations') for run in runs])
+    block = pd.Series([run.metadata.get(group.blocks) for run in runs], dtype=object)
+    return '' if block_fault(sets, block) else group.blocks
+
+
+def _row(run: RunRecord, factors: Sequence[str], response: str, blocks: str) -> dict[str, object]:
+    letters = _known(run, 'observations')
     return {
         'run_id': run.run_id,
         **{name: int(run.metadata[name]) for name in _DESIGN_ROW if run.metadata.get(name)},
         **{factor: 1 if factor in letters else -1 for factor in factors},
         RESPONSE: response_of(run, response),
+        **({BLOCK: _known(run, blocks)} if blocks else {}),
     }
 
 
-def _observations(run: RunRecord) -> str:
-    if 'observations' not in run.metadata:
-        raise BagError(f'run {run.run_id}: its metadata lacks the observations')
-    return run.metadata['observations']
+def _known(run: RunRecord, key: str) -> str:
+    if key not in run.metadata:
+        raise BagError(f'run {run.run_id}: its metadata lacks the key {key!r}')
+    return run.metadata[key]
 
 
 def _curves(runs: Iterable[RunRecord], rows: pd.DataFrame) -> pd.DataFrame:

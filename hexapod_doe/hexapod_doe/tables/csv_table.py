@@ -10,19 +10,25 @@ import numpy as np
 import pandas as pd
 
 from hexapod_doe.fitting.model import labels
-from hexapod_doe.tables.table import RESPONSE, RunTable, TableError, build_rows
+from hexapod_doe.tables.table import BLOCK, RESPONSE, RunTable, TableError, build_rows
 
 DESIGN_COLUMN = 'design'
 _KNOWN = ('run_id', 'case', 'StdOrder', 'replicate', 'RunOrder')
 
 
-def read_csv(path: Path, response: str, factors: Sequence[str] | None = None) -> list[RunTable]:
+def read_csv(
+    path: Path,
+    response: str,
+    factors: Sequence[str] | None = None,
+    blocks: str = '',
+) -> list[RunTable]:
     """Read a CSV file with a header; a column `design` splits it into several tables.
 
     Args:
         path: The file.
         response: Name of the response column.
         factors: One-character factor columns; by default all columns named by one capital letter.
+        blocks: Column that tells the blocks apart; empty for none.
 
     Raises:
         TableError: The file has no such column, or its rows cannot be analysed.
@@ -32,12 +38,15 @@ def read_csv(path: Path, response: str, factors: Sequence[str] | None = None) ->
     names = _factors(raw, path, response, factors)
     columns = [*names, *(name for name in _KNOWN if name in raw.columns)]
     tidy = raw[columns].assign(**{RESPONSE: raw[response]})
+    if blocks:
+        tidy[BLOCK] = _column(raw, path, blocks, 'blocks')
     if DESIGN_COLUMN in raw.columns and response != DESIGN_COLUMN:
         groups = [(str(name), part) for name, part in tidy.groupby(raw[DESIGN_COLUMN], sort=False)]
     else:
         groups = [('', tidy)]
     return [
-        _table(path, response, names, name, part.reset_index(drop=True)) for name, part in groups
+        _table(path, response, names, name, blocks, part.reset_index(drop=True))
+        for name, part in groups
     ]
 
 
@@ -50,14 +59,18 @@ def _read(path: Path) -> pd.DataFrame:
         raise TableError(f'{path}: {error}') from error
 
 
+def _column(raw: pd.DataFrame, path: Path, name: str, use: str) -> pd.Series:
+    if name not in raw.columns:
+        known = ', '.join(map(str, raw.columns))
+        raise TableError(f'{path}: no column {name!r} for {use}, expected one of {known}')
+    return raw[name]
+
+
 def _factors(
     raw: pd.DataFrame, path: Path, response: str, factors: Sequence[str] | None
 ) -> tuple[str, ...]:
     known = ', '.join(map(str, raw.columns))
-    if response not in raw.columns:
-        raise TableError(
-            f'{path}: no column {response!r} for the response, expected one of {known}'
-        )
+    _column(raw, path, response, 'the response')
     if factors is None:
         names = tuple(
             name
@@ -76,14 +89,21 @@ def _factors(
 
 
 def _table(
-    path: Path, response: str, factors: tuple[str, ...], design: str, raw: pd.DataFrame
+    path: Path,
+    response: str,
+    factors: tuple[str, ...],
+    design: str,
+    blocks: str,
+    raw: pd.DataFrame,
 ) -> RunTable:
     try:
         rows, caveats = build_rows(raw, factors)
     except TableError as error:
         raise TableError(f'{path}: {error}') from error
     title = path.stem if design in ('', path.stem) else f'{path.stem} {design}'
-    return RunTable(title, str(path), response, factors, rows, caveats, design)
+    return RunTable(
+        title, str(path), response, factors, rows, caveats, design, block_column=blocks
+    )
 
 
 def read_responses(

@@ -12,7 +12,7 @@ from hexapod_doe.analysis.findings import TwoPart
 from hexapod_doe.analysis.results import Analysis, DesignSummary
 from hexapod_doe.designs.aliases import defining_relation, defining_words, resolution
 from hexapod_doe.fitting.model import corners, labels
-from hexapod_doe.tables.table import RunTable
+from hexapod_doe.tables.table import BLOCK, RunTable
 
 _MISSING_SHARE = 0.25
 """With more of a fraction missing than this the design was never meant to be that fraction."""
@@ -40,6 +40,8 @@ def summarise(table: RunTable, aliases: Mapping[str, str]) -> DesignSummary:
         runs=len(table.rows),
         replicates=(int(runs.min()), int(runs.max())),
         centre_points=int(centre.sum()),
+        block_column=table.block_column,
+        blocks=table.rows[BLOCK].nunique() if table.block_column else 0,
         aliases=aliases,
     )
 
@@ -76,6 +78,7 @@ def model_caveats(analysis: Analysis) -> list[str]:
             'from it by more than their runs differ among themselves, so that its classical '
             'intervals are too short.'
         )
+    caveats += _block_caveats(analysis)
     transform = analysis.transform
     if transform is not None and transform.lambda_ci is not None:
         low, high = transform.lambda_ci
@@ -93,6 +96,20 @@ def model_caveats(analysis: Analysis) -> list[str]:
             f'predictions depend on the name; best under some name: {winners}.'
         )
     return caveats
+
+
+def _block_caveats(analysis: Analysis) -> list[str]:
+    test, design = analysis.final.blocks, analysis.design
+    if test is None:
+        return []
+    text = (
+        f'Runs are compared within {design.blocks} blocks by {design.block_column}: effects and '
+        'differences between sets are free of them, interval of a mean holds for these blocks.'
+    )
+    if test.p is not None:
+        differ = 'differ' if test.p < analysis.options['alpha'] else "don't differ"
+        text += f' Blocks {differ} by more than runs of one block do (p = {test.p:.2g}).'
+    return [text]
 
 
 def failure_caveat(record: TwoPart) -> str:

@@ -10,9 +10,11 @@ import numpy as np
 import pandas as pd
 
 from hexapod_doe.errors import AnalysisError
+from hexapod_doe.fitting.blocks import block_basis, no_blocks
 from hexapod_doe.fitting.model import labels
 
 RESPONSE = 'response'
+BLOCK = 'block'
 CURVE_COLUMNS = ('run_id', 'label', 'case', 'replicate', 'episode', 'return', 'average')
 
 
@@ -24,7 +26,8 @@ class TableError(AnalysisError):
 class RunTable:
     """Runs of one design.
 
-    `rows` has run_id, case, replicate, run_order, label, one column per factor, and response.
+    `rows` has run_id, case, replicate, run_order, label, one column per factor, response, and
+    block if the runs are in blocks.
     """
 
     title: str
@@ -36,6 +39,8 @@ class RunTable:
     design: str = ''
     factor_names: Mapping[str, str] = field(default_factory=dict)
     curves: pd.DataFrame = field(default_factory=lambda: pd.DataFrame(columns=CURVE_COLUMNS))
+    block_column: str = ''
+    """What the blocks are of, such as `seed`; empty if the runs are in none."""
 
     @property
     def levels(self) -> pd.DataFrame:
@@ -47,17 +52,25 @@ class RunTable:
         """The response (n,)."""
         return self.rows[RESPONSE].to_numpy(float)
 
+    def block_basis(self, kept: np.ndarray) -> np.ndarray:
+        """Return the basis of the differences between blocks of the rows kept (kept, b)."""
+        if not self.block_column:
+            return no_blocks(int(kept.sum()))
+        return block_basis(self.rows.loc[kept, BLOCK].to_numpy())
+
 
 def build_rows(raw: pd.DataFrame, factors: Sequence[str]) -> tuple[pd.DataFrame, tuple[str, ...]]:
     """Return validated rows, and what a reader must know about them.
 
     Args:
-        raw: Factor columns and `response`; run_id, case, StdOrder, replicate, RunOrder if known.
+        raw: Factor columns and `response`; run_id, case, StdOrder, replicate, RunOrder, block if
+            known.
         factors: Factor letters.
 
     Raises:
         TableError: A level is not ±1, a factor never changes, the response is not a number, is
-            the same everywhere or is nowhere, or a run occurs twice with two results.
+            the same everywhere or is nowhere, a run occurs twice with two results, or blocks
+            cannot be told from cases.
     """
     _check_levels(raw, factors)
     response, dropped = _finite_response(raw)
@@ -82,8 +95,11 @@ def build_rows(raw: pd.DataFrame, factors: Sequence[str]) -> tuple[pd.DataFrame,
             'label': labels(raw[list(factors)]),
             **{factor: raw[factor].astype(int) for factor in factors},
             RESPONSE: raw[RESPONSE].astype(float),
+            **({BLOCK: raw[BLOCK]} if BLOCK in raw else {}),
         }
     )
+    if BLOCK in rows and (fault := block_fault(rows['case'], rows[BLOCK])):
+        raise TableError(fault)
     return rows, (*dropped, *repeated, *renumbered)
 
 
@@ -129,6 +145,27 @@ def _check_variation(raw: pd.DataFrame, factors: Sequence[str]) -> None:
         raise TableError(
             f'the response is {raw[RESPONSE].iloc[0]:g} in every row: there is nothing to explain'
         )
+
+
+def block_fault(case: pd.Series, block: pd.Series) -> str:
+    """Return why the differences between blocks cannot be taken out; empty if they can.
+
+    Args:
+        case: The case of each run.
+        block: Its block.
+    """
+    missing = block.isna().to_numpy()
+    if missing.any():
+        return f'row {int(np.argmax(missing)) + 1}: no block, expected one in every row'
+    cases = case.groupby(block).nunique()
+    if len(cases) < 2:
+        return f'every run is in block {cases.index[0]}, expected two blocks or more'
+    if cases.max() < 2:
+        return (
+            'no block holds runs of two cases, so that differences between blocks cannot be told '
+            'from those between cases; plan --common-seeds gives every case the same seeds'
+        )
+    return ''
 
 
 def _without_repeats(raw: pd.DataFrame) -> tuple[pd.DataFrame, tuple[str, ...]]:

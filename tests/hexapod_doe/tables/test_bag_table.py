@@ -10,6 +10,7 @@ from hexapod_doe.designs.design import fraction
 from hexapod_doe.designs.plan_file import write_plan
 from hexapod_doe.designs.plan_table import make_plan
 from hexapod_doe.designs.plan_types import Confirmation
+from hexapod_doe.errors import BagError
 from hexapod_doe.tables.bag_table import bag_responses, plan_rule, read_bags
 from hexapod_doe.tables.table import TableError
 
@@ -79,6 +80,24 @@ def test_the_plan_fixes_the_rule_of_confirmation(campaign: Path, tmp_path: Path)
     rule = plan_rule([campaign])
     assert (rule.runs, rule.level) == (7, 0.9)
     assert plan_rule([tmp_path]) == Confirmation()
+
+
+@pytest.mark.parametrize(('replicates', 'column'), [(1, ''), (2, 'seed')])
+def test_the_plan_says_that_seeds_are_blocks(
+    tmp_path: Path, write_bag: WriteBag, replicates: int, column: str
+) -> None:
+    plan = make_plan(fraction('eighth'), replicates, common_seeds=True)
+    write_plan(plan, tmp_path / 'tour' / 'plan.csv')
+    for row in plan.rows.to_dict('records'):
+        metadata = {str(key): str(value) for key, value in row.items()}
+        write_bag(f'tour/runs/{row["run_id"]}', episodes=row['case'], samples=0, **metadata)
+    (table,) = read_bags([tmp_path / 'tour'])
+    assert table.block_column == column
+    assert ('block' in table.rows) == bool(column)
+    (plain,) = read_bags([tmp_path / 'tour'], blocks='')
+    assert plain.block_column == ''
+    with pytest.raises(BagError, match="run case01_rep01: its metadata lacks the key 'machine'"):
+        read_bags([tmp_path / 'tour'], blocks='machine')
 
 
 def test_unfinished_runs_are_left_out(campaign: Path, write_bag: WriteBag) -> None:

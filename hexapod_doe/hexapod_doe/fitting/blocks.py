@@ -1,0 +1,73 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Blocks of runs that share a seed, a day or a machine: their differences, taken out of a fit.
+
+A fit with blocks has a column for each difference between them. By the theorem of Frisch, Waugh
+and Lovell its other coefficients and residuals are those of a fit in which the blocks have been
+projected out of the response and of every column, which is how it is computed here.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from scipy import linalg, stats
+
+
+@dataclass(frozen=True)
+class BlockTest:
+    """Whether blocks differ by more than runs of one block do; f and p None without error."""
+
+    ss: float
+    """Error sum of squares that the blocks take up, given the terms of the model."""
+    df: int
+    f: float | None
+    p: float | None
+
+
+def no_blocks(rows: int) -> np.ndarray:
+    """Return the basis of runs that are all of one block (n, 0)."""
+    return np.empty((rows, 0))
+
+
+def block_basis(labels: np.ndarray) -> np.ndarray:
+    """Return orthonormal columns that span the differences between blocks.
+
+    Blocks are coded to sum to zero, so that the constant is the mean over blocks, each one
+    weighing alike.
+
+    Args:
+        labels: The block of each run (n,).
+
+    Returns:
+        Shape: (n, blocks − 1).
+    """
+    codes, names = pd.factorize(labels)
+    if len(names) < 2:
+        return no_blocks(len(codes))
+    indicator = np.eye(len(names))[codes]
+    return linalg.qr(indicator[:, :-1] - indicator[:, -1:], mode='economic')[0]
+
+
+def without_blocks(values: np.ndarray, basis: np.ndarray) -> np.ndarray:
+    """Return columns (n,) or (n, p) with the differences between blocks projected out."""
+    return values - basis @ (basis.T @ values)
+
+
+def block_test(sse: float, df_error: int, sse_without: float, df: int) -> BlockTest | None:
+    """Test the blocks; None where there is only one.
+
+    Args:
+        sse: Error sum of squares of the model with its blocks.
+        df_error: Its degrees of freedom.
+        sse_without: Error sum of squares of the same terms without blocks.
+        df: Blocks less one.
+    """
+    if not df:
+        return None
+    ss = max(sse_without - sse, 0.0)
+    if not df_error or sse <= 0:
+        return BlockTest(ss, df, None, None)
+    f = (ss / df) / (sse / df_error)
+    return BlockTest(ss, df, f, float(stats.f.sf(f, df, df_error)))
