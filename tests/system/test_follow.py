@@ -9,7 +9,7 @@ import pytest
 from hexapod_agent.config import AgentConfig
 from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.training import Trainer
-from hexapod_doe.analysis.follow import read_track
+from hexapod_doe.analysis.follow import read_track, responses
 from hexapod_doe.bags.run_record import read_run
 
 from hexapod_agent import checkpoint
@@ -44,6 +44,19 @@ def test_launch_records_and_reports(ready, composed: str) -> None:
     assert report.returncode == 0, report.stderr
     assert '+0.60' in report.stdout
     assert (ready.directory / 'follow.svg').is_file()
+
+
+def test_the_shipped_agent_follows_a_line_that_jumps_by_a_metre(shell) -> None:
+    (shell.directory / 'jumps.yaml').write_text(
+        'task: {time_limit_steps: 1000, line_jump: 0.5, line_period: 12.0, start_offset: 0.0}\n'
+    )
+    ended = shell.run(f'{LAUNCH} config:=jumps.yaml bag:=bag', timeout_s=180.0)
+    assert ended.returncode == 0, ended.stdout + ended.stderr
+    track = read_track(shell.directory / 'bag')
+    first = responses(track)[0]
+    assert first.jump == pytest.approx(1.0)
+    assert first.settling_time < 10.0
+    assert first.offset_after < 0.1
 
 
 def test_a_missing_checkpoint_ends_the_launch(ready) -> None:

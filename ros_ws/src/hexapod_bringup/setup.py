@@ -19,6 +19,7 @@ setup(
         (f'share/{NAME}', ['package.xml']),
         (f'share/{NAME}/launch', glob('launch/*')),
         (f'share/{NAME}/config', glob('config/*')),
+        (f'share/{NAME}/agents', glob('agents/*')),
         (f'share/{NAME}/urdf', glob('urdf/*')),
     ],
     install_requires=['setuptools'],
