@@ -1,0 +1,152 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Study of the learning itself: does the agent learn the task within its budget, in every seed?
+
+    python -m hexapod_doe.studies.learning --out runs/learning
+
+trains sets of sensors with several seeds, evaluates each agent from the same starts as the
+baselines, and leaves table.csv and curves.png. What a directory already holds is not repeated.
+"""
+
+import argparse
+import json
+import subprocess
+import sys
+from collections.abc import Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+from hexapod_agent.train import AGENT, CHECKPOINT, LOG
+
+from hexapod_doe.studies.learning_curves import draw
+
+FIGURES = 'evaluation.json'
+BASELINES = ('zero', 'constant')
+COLUMNS = (
+    'final_average_reward',
+    'mean_offset',
+    'offset_95',
+    'speed',
+    'falls',
+    'energy_per_metre',
+)
+
+
+@dataclass(frozen=True)
+class Training:
+    """One run of the study."""
+
+    letters: str
+    seed: int
+    episodes: int
+    directory: Path
+    config: Path | None
+
+    def train(self) -> None:
+        """Train it, from its checkpoint if it has one."""
+        log = self.directory / LOG
+        if (self.directory / AGENT).exists() and len(pd.read_csv(log)) >= self.episodes:
+            return
+        changes = ['--config', str(self.config)] if self.config else []
+        resume = ['--resume'] if (self.directory / CHECKPOINT).exists() else []
+        _python(
+            'hexapod_agent.train', '--observations', self.letters, '--seed', str(self.seed),
+            '--episodes', str(self.episodes), '--out', str(self.directory), *changes, *resume,
+        )  # fmt: skip
+
+    def evaluate(self, starts: int) -> dict[str, float]:
+        """Return the figures of its agent, without noise."""
+        return _figures(self.directory / FIGURES, starts, str(self.directory / AGENT))
+
+    def curve(self) -> pd.DataFrame:
+        """Return the returns of its episodes."""
+        columns = ['episode', 'episode_return', 'average_return']
+        return pd.read_csv(self.directory / LOG)[columns].assign(
+            observations=self.letters or 'none', seed=self.seed
+        )
+
+
+def _python(module: str, *arguments: str) -> None:
+    subprocess.run(
+        [sys.executable, '-m', module, *arguments], check=True, stdout=subprocess.DEVNULL
+    )
+
+
+def _figures(file: Path, starts: int, *subject: str) -> dict[str, float]:
+    """Read what `evaluate` found, after calling it where that is missing or out of date."""
+    if not _is_current(file, starts, Path(subject[0])):
+        _python('hexapod_agent.evaluate', *subject, '--starts', str(starts), '--json', str(file))
+    figures: dict[str, float] = json.loads(file.read_text())
+    return figures
+
+
+def _is_current(file: Path, starts: int, agent: Path) -> bool:
+    if not file.exists() or json.loads(file.read_text())['starts'] != starts:
+        return False
+    return not agent.exists() or file.stat().st_mtime >= agent.stat().st_mtime
+
+
+def table(
+    baselines: dict[str, dict[str, float]], runs: Iterable[tuple[Training, dict[str, float]]]
+) -> pd.DataFrame:
+    """Return one row per agent; `gain` is the reward over that of the best constant action."""
+    best = baselines['constant']['final_average_reward']
+    rows = [{'agent': f'{name} action', **figures} for name, figures in baselines.items()]
+    rows += [
+        {'agent': run.letters or 'none', 'seed': run.seed, 'episodes': run.episodes, **figures}
+        for run, figures in runs
+    ]
+    frame = pd.DataFrame(rows)
+    frame['gain'] = frame['final_average_reward'] / best - 1.0
+    names = ['agent', 'seed', 'episodes', *COLUMNS, 'gain']
+    return frame[names].astype({'seed': 'Int64', 'episodes': 'Int64', 'falls': 'Int64'})
+
+
+def main(args: Sequence[str] | None = None) -> None:
+    """Train, evaluate and tabulate."""
+    options = _parser().parse_args(args)
+    options.out.mkdir(parents=True, exist_ok=True)
+    runs = [
+        Training(
+            letters, seed, options.episodes, options.out / f'{letters or "none"}_{seed}',
+            options.config,
+        )
+        for letters in ('' if name == 'none' else name for name in options.sets)
+        for seed in range(1, options.seeds + 1)
+    ]  # fmt: skip
+    changes = ['--config', str(options.config)] if options.config else []
+    with ThreadPoolExecutor(options.jobs) as pool:
+        list(pool.map(Training.train, runs))
+        baselines = pool.map(
+            lambda name: _figures(
+                options.out / f'{name}.json', options.starts, '--policy', name, *changes
+            ),
+            BASELINES,
+        )
+        figures = list(pool.map(lambda run: run.evaluate(options.starts), runs))
+    found = table(dict(zip(BASELINES, baselines, strict=True)), zip(runs, figures, strict=True))
+    found.to_csv(options.out / 'table.csv', index=False, lineterminator='\n')
+    best = found.loc[found['agent'] == 'constant action', 'final_average_reward'].item()
+    draw(pd.concat([run.curve() for run in runs]), best, options.out / 'curves.png')
+    print(found.to_string(index=False, float_format='{:.3f}'.format, na_rep=''))
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog='learning', description=__doc__)
+    parser.add_argument('--out', type=Path, required=True, help='directory of runs and results')
+    parser.add_argument(
+        '--sets', nargs='+', default=['ABCDE', 'none'], help='sets of sensors (ABCDE and none)'
+    )
+    parser.add_argument('--seeds', type=int, default=5, help='runs of each set (default 5)')
+    parser.add_argument('--episodes', type=int, default=200, help='per run (default 200)')
+    parser.add_argument('--starts', type=int, default=50, help='of an evaluation (default 50)')
+    parser.add_argument('--config', type=Path, help='YAML file of changes to article.yaml')
+    parser.add_argument('--jobs', type=int, default=2, help='runs side by side (default 2)')
+    return parser
+
+
+if __name__ == '__main__':
+    main()
