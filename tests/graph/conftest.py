@@ -62,9 +62,15 @@ class Graph:
 
 
 @pytest.fixture
-def graph() -> Iterator[Graph]:
+def ros_args() -> list[str]:
+    """Return the arguments that every node of the test gets; a module may have its own."""
+    return []
+
+
+@pytest.fixture
+def graph(ros_args: list[str]) -> Iterator[Graph]:
     """Yield a graph with one helper node; everything in it ends with the test."""
-    rclpy.init()
+    rclpy.init(args=ros_args)
     made = Graph()
     made.add(Node('test'))
     yield made

@@ -14,6 +14,8 @@ from hexapod_cpg.messages import command_to_message
 from hexapod_interfaces.msg import CpgCommand, CpgState
 from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.stamps import time_message, to_nanoseconds
+from lifecycle_msgs.msg import Transition
+from lifecycle_msgs.srv import ChangeState
 from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.parameter import Parameter
 from trajectory_msgs.msg import JointTrajectory
@@ -104,3 +106,53 @@ def test_an_unknown_gait_is_refused(rig: Rig) -> None:
     assert not answer.result.successful
     assert 'gallop' in answer.result.reason
     assert 'tripod' in answer.result.reason
+
+
+def change_state(rig: Rig, transition: int) -> bool:
+    request = ChangeState.Request(transition=Transition(id=transition))
+    return rig.graph.call(ChangeState, 'cpg/change_state', request).success
+
+
+def test_inactive_it_answers_commands_with_the_way_to_the_standing_pose(rig: Rig) -> None:
+    rig.command(START)
+    rig.graph.until(lambda: len(rig.trajectories) == 1)
+    assert change_state(rig, Transition.TRANSITION_DEACTIVATE)
+    last = np.array(rig.trajectories[0].points[-1].positions)
+    stamp, periods = START, 0
+    while not np.array_equal(last, robot.NEUTRAL_POSE):
+        stamp, periods = stamp + PERIOD, periods + 1
+        rig.command(stamp)
+        rig.graph.until(lambda: len(rig.trajectories) == periods + 1)  # noqa: B023
+        targets = np.array([list(point.positions) for point in rig.trajectories[-1].points])
+        # stop_rate is 0.5 rad/s, and targets are 5 ms apart.
+        steps = np.abs(np.diff(targets, axis=0, prepend=last[None]))
+        assert steps.max() <= 0.0025 * (1 + 1e-9)
+        last = targets[-1]
+    assert periods > 1
+
+
+def test_inactive_it_refuses_an_episode_and_says_the_cure(rig: Rig) -> None:
+    assert change_state(rig, Transition.TRANSITION_DEACTIVATE)
+    response = rig.graph.call(ResetEpisode, 'cpg/reset', ResetEpisode.Request())
+    assert not response.success
+    assert response.message == 'cpg is not active: expected `ros2 lifecycle set cpg activate`'
+    assert change_state(rig, Transition.TRANSITION_ACTIVATE)
+    assert rig.graph.call(ResetEpisode, 'cpg/reset', ResetEpisode.Request()).success
+
+
+def test_targets_stay_within_the_joint_limits_and_the_excess_is_counted(rig: Rig) -> None:
+    rig.command(START, lambda message: message.knee_bias.fill(100.0))
+    rig.graph.until(lambda: len(rig.trajectories) == 1)
+    targets = np.array([list(point.positions) for point in rig.trajectories[0].points])
+    assert (targets[:, 1::3] == robot.JOINT_UPPER[1]).all()
+    assert dict(rig.cpg._health()[2])['beyond_limit'] == 1
+
+
+def test_a_command_that_the_oscillators_cannot_follow_is_refused(rig: Rig) -> None:
+    errors = []
+    rig.cpg.get_logger().error = errors.append
+    with np.errstate(all='ignore'):
+        rig.command(START, lambda message: message.mu.fill(1e300))
+        rig.graph.until(lambda: bool(errors))
+    rig.command(START)
+    rig.graph.until(lambda: len(rig.trajectories) == 1)

@@ -1,0 +1,72 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Walking as commanded, and the slow way back to the standing pose."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hexapod_cpg.cpg import Cpg
+from hexapod_cpg.joint_guard import JointGuard
+from hexapod_cpg.locomotion import Locomotion, Motion
+from hexapod_cpg.mapping import command_from_action
+from hexapod_cpg.oscillator import HopfConfig
+
+from hexapod_sim import robot
+
+RATE, STOP_RATE = 6.2, 0.5
+COMMAND = command_from_action(np.linspace(-1.0, 1.0, 30))
+
+
+@pytest.fixture
+def legs() -> Locomotion:
+    return Locomotion(HopfConfig(), JointGuard(RATE), STOP_RATE)
+
+
+def test_in_lock_step_the_pattern_generators_targets_are_played_as_they_are(legs) -> None:
+    cpg = Cpg()
+    for _ in range(50):
+        np.testing.assert_array_equal(legs.play(COMMAND), cpg.advance(COMMAND))
+    assert legs.motion is Motion.WALKING
+
+
+def test_a_stop_is_slow_and_ends_in_the_standing_pose(legs) -> None:
+    for _ in range(30):
+        legs.walk(COMMAND)
+    position = legs.guard.position
+    farthest = np.abs(position - robot.NEUTRAL_POSE).max()
+    periods = 0
+    while legs.motion is not Motion.STANDING:
+        targets = legs.stop()
+        steps = np.abs(np.diff(targets, axis=0, prepend=position[None]))
+        assert steps.max() <= STOP_RATE * 0.005 * (1 + 1e-9)
+        position = targets[-1]
+        periods += 1
+    np.testing.assert_array_equal(position, robot.NEUTRAL_POSE)
+    assert periods == np.ceil(farthest / (STOP_RATE * 0.025) - 1e-9)
+    np.testing.assert_array_equal(legs.stop(), np.tile(robot.NEUTRAL_POSE, (5, 1)))
+
+
+def test_a_command_amid_a_stop_walks_on_from_where_the_legs_are(legs) -> None:
+    for _ in range(30):
+        legs.walk(COMMAND)
+    legs.stop()
+    assert legs.motion is Motion.STOPPING
+    start = legs.guard.position
+    targets = legs.walk(COMMAND)
+    assert np.abs(np.diff(targets, axis=0, prepend=start[None])).max() <= RATE * 0.005 * (1 + 1e-9)
+    assert legs.motion is Motion.WALKING
+
+
+@pytest.mark.parametrize('value', [np.nan, np.inf, 1e300])
+def test_a_command_of_no_use_is_refused_and_changes_nothing(legs, value: float) -> None:
+    legs.walk(COMMAND)
+    before = (legs.cpg.x.copy(), legs.guard.position.copy(), legs.motion)
+    with np.errstate(all='ignore'), pytest.raises(ValueError, match='command'):
+        legs.walk(replace(COMMAND, mu=np.full(6, value)))
+    np.testing.assert_array_equal(legs.cpg.x, before[0])
+    np.testing.assert_array_equal(legs.guard.position, before[1])
+    assert legs.motion is before[2]
