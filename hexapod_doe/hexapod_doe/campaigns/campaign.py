@@ -33,6 +33,27 @@ class Row:
     """Every column of the row, for the bag."""
 
 
+def read_rows(plan: Path) -> tuple[Row, ...]:
+    """Read the rows of a plan in its run order; their bags are to lie beside it.
+
+    Raises:
+        FileNotFoundError: there is no such plan.
+        hexapod_doe.designs.plan_file.PlanError: the file is not a plan.
+    """
+    directory = plan.resolve().parent
+    table = read_plan(plan).rows.sort_values('RunOrder')
+    return tuple(
+        Row(
+            run_id=row['run_id'],
+            observations=row['observations'],
+            seed=int(row['seed']),
+            bag=directory / RUNS_FOLDER / row['run_id'],
+            metadata={str(key): str(value) for key, value in row.items()},
+        )
+        for row in table.to_dict('records')
+    )
+
+
 @dataclass(frozen=True)
 class RunSettings:
     """What all runs of a campaign have in common."""
@@ -72,19 +93,8 @@ class Campaign:
             FileNotFoundError: there is no such plan.
             hexapod_doe.designs.plan_file.PlanError: the file is not a plan.
         """
-        directory = plan.resolve().parent
-        table = read_plan(plan).rows.sort_values('RunOrder')
-        rows = tuple(
-            Row(
-                run_id=row['run_id'],
-                observations=row['observations'],
-                seed=int(row['seed']),
-                bag=directory / RUNS_FOLDER / row['run_id'],
-                metadata={str(key): str(value) for key, value in row.items()},
-            )
-            for row in table.to_dict('records')
-        )
-        campaign = cls(directory, rows, attempts)
+        rows = read_rows(plan)
+        campaign = cls(plan.resolve().parent, rows, attempts)
         campaign.done = {row.run_id for row in rows if is_complete(row.bag)}
         return campaign
 

@@ -20,6 +20,7 @@ from hexapod_doe.bags.run_bag import EPISODE_RESULT, RUN_RECORD
 from hexapod_doe.bags.run_record import is_complete
 from hexapod_doe.bags.salvage import whole_records
 from hexapod_doe.campaigns.campaign import PLAN_FILE, RUNS_FOLDER
+from hexapod_doe.campaigns.failures import read_failures
 from hexapod_doe.campaigns.progress import Progress, Run, State
 from hexapod_doe.designs.plan_file import read_plan
 
@@ -43,7 +44,15 @@ def read_progress(directory: Path, known: Mapping[str, Run] | None = None) -> Pr
         had.get(run_id) or read_row(directory / RUNS_FOLDER / run_id, run_id, observations)
         for run_id, observations in zip(rows['run_id'], rows['observations'], strict=True)
     ]
+    _add_failures(runs, read_failures(directory))
     return Progress(directory.resolve().name, {run.run_id: run for run in runs})
+
+
+def _add_failures(runs: Sequence[Run], reasons: Mapping[str, Sequence[str]]) -> None:
+    """Tell what failed: what was tried in vain, and neither was done since nor is under way."""
+    for run in runs:
+        if run.run_id in reasons and run.state in (State.DUE, State.INTERRUPTED):
+            run.state, run.reason = State.FAILED, reasons[run.run_id][-1]
 
 
 def read_row(bag: Path, run_id: str, observations: str) -> Run:

@@ -8,7 +8,7 @@ The page asks its reader to load it again every half minute, and requests nothin
 
 from __future__ import annotations
 
-import os
+import tempfile
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -30,12 +30,11 @@ def write_page(progress: Progress, directory: Path) -> Path:
         OSError: the disk refuses.
     """
     page = directory / PAGE_FILE
-    draft = directory / f'.{PAGE_FILE}.{os.getpid()}'
-    try:
-        draft.write_text(render(progress), encoding='utf-8')
+    content = render(progress).encode()
+    with tempfile.TemporaryDirectory(dir=directory, prefix='.page') as drafts:
+        draft = Path(drafts) / PAGE_FILE
+        draft.write_bytes(content)
         draft.replace(page)
-    finally:
-        draft.unlink(missing_ok=True)
     return page
 
 

@@ -1,0 +1,85 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Node `case`: has one row trained by the worker that it shares its process with."""
+
+from __future__ import annotations
+
+import os
+from functools import partial
+
+from hexapod_agent.agent_node import AgentNode
+from hexapod_cpg.cpg_node import CpgNode
+from hexapod_interfaces.action import TrainRun
+from hexapod_node.conditions import until_true
+from hexapod_node.coroutines import start
+from hexapod_node.spin import run
+from hexapod_sim.sim_node import SimNode
+from rclpy.action import ActionClient
+from rclpy.node import Node
+from rclpy.task import Future
+
+from hexapod_doe.campaigns.campaign import Row, RunSettings
+from hexapod_doe.campaigns.messages import train_goal
+from hexapod_doe.campaigns.peers import WorkerLostError, WorkerPeer
+from hexapod_doe.recorder_node import RecorderNode
+
+_READY_S = 10.0
+_LOG_S = 10.0
+
+
+class CaseNode(Node):
+    """Sends its one goal, follows it, and ends the process with what became of it.
+
+    Attributes:
+        exit_status: 0 once the row is trained, 1 once that has failed, None before.
+    """
+
+    def __init__(self, row: Row, settings: RunSettings, stall_s: float) -> None:
+        super().__init__('case')
+        self.exit_status: int | None = None
+        self._row, self._settings = row, settings
+        client = ActionClient(self, TrainRun, 'train_run')
+        self._worker = WorkerPeer(self, client, self.get_namespace(), stall_s)
+        start(self._train()).add_done_callback(self._on_end)
+
+    async def _train(self) -> str:
+        """Return why it failed, or ''."""
+        if not await until_true(self, self._worker.present, _READY_S):
+            return f'no worker within {_READY_S:g} s, expected the one of this process'
+        try:
+            goal = train_goal(self._row, self._settings)
+            ended = await self._worker.train(goal, self._on_episode)
+        except WorkerLostError as error:
+            return str(error)
+        return ended.message
+
+    def _on_episode(self, episode: int, episode_return: float) -> None:
+        self.get_logger().info(
+            f'{self._row.run_id}: episode {episode + 1} of {self._settings.episodes}, '
+            f'return {episode_return:.1f}',
+            throttle_duration_sec=_LOG_S,
+        )
+
+    def _on_end(self, ended: Future) -> None:
+        reason = ended.result()
+        if reason:
+            self.get_logger().error(f'{self._row.run_id}: {reason}')
+        self.exit_status = 1 if reason else 0
+
+
+def train_row(row: Row, settings: RunSettings, stall_s: float) -> None:
+    """Train a row on a worker that nobody outside this process can see.
+
+    Raises:
+        SystemExit: always, at the end of the training or after a signal.
+    """
+    # Nodes of one process find each other all the same.
+    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'OFF'
+    namespace = ['--ros-args', '-r', f'__ns:=/{row.run_id}']
+    run(partial(_make_nodes, row, settings, stall_s), namespace)
+
+
+def _make_nodes(row: Row, settings: RunSettings, stall_s: float) -> list[Node]:
+    worker: list[Node] = [SimNode(), CpgNode(), RecorderNode(), AgentNode()]
+    return [*worker, CaseNode(row, settings, stall_s)]

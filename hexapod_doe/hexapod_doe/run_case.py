@@ -1,0 +1,111 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Command line: train one row of a plan on a worker of its own, for the jobs of a batch system.
+
+A row that is done is left alone, one that was interrupted goes on, and the same command may be
+repeated at will.
+"""
+
+from __future__ import annotations
+
+import argparse
+import faulthandler
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from hexapod_doe.bags.run_record import is_complete
+from hexapod_doe.campaigns.campaign import Row, RunSettings, read_rows
+from hexapod_doe.campaigns.campaign_lock import campaign_lock, row_lock
+from hexapod_doe.campaigns.folder import read_progress
+from hexapod_doe.campaigns.page import write_page
+from hexapod_doe.campaigns.plan_copy import place_plan
+from hexapod_doe.designs.plan_file import PlanError
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Return 0 if the row is done, 1 if it is not, 2 if the plan has no such row."""
+    args = _parser().parse_args(arguments)
+    try:
+        plan = place_plan(args.plan, args.out)
+        row = _row(plan, args.row)
+    except (PlanError, OSError) as error:
+        print(f'run_case: {error}', file=sys.stderr)
+        return 2
+    if is_complete(row.bag):
+        print(f'{row.run_id} is done: {row.bag}')
+        return 0
+    try:
+        with campaign_lock(plan.resolve().parent, shared=True), row_lock(row.bag):
+            return _train(row, args)
+    except (ValueError, OSError) as error:
+        print(f'run_case: {error}', file=sys.stderr)
+        return 1
+
+
+def _train(row: Row, args: argparse.Namespace) -> int:
+    """Train the row and judge its bag."""
+    from hexapod_doe.case_node import train_row  # what is done needs neither ROS nor torch
+
+    config = str(args.hyperparameters.resolve(strict=True)) if args.hyperparameters else ''
+    settings = RunSettings(args.episodes, config, args.record_every)
+    try:
+        train_row(row, settings, args.stall)
+    except SystemExit:  # of the nodes; after a signal it is 0, whatever the bag lacks
+        faulthandler.cancel_dump_traceback_later()
+    directory = row.bag.parent.parent
+    write_page(read_progress(directory), directory)
+    if not is_complete(row.bag):
+        print(f'run_case: {row.run_id} is not done, the same command goes on', file=sys.stderr)
+        return 1
+    print(f'{row.run_id} is done: {row.bag}')
+    return 0
+
+
+def _row(plan: Path, number: int) -> Row:
+    """Return the row of a number in the plan's first column.
+
+    Raises:
+        PlanError: the plan has no such row.
+    """
+    rows = {int(row.metadata['StdOrder']): row for row in read_rows(plan)}
+    if number not in rows:
+        raise PlanError(
+            f'{plan}: no row {number}, expected a StdOrder of {min(rows)} to {max(rows)}'
+        )
+    return rows[number]
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog='run_case', description=__doc__)
+    parser.add_argument('--plan', type=Path, required=True, help='plan.csv of the campaign')
+    parser.add_argument('--row', type=int, required=True, help='StdOrder of the row')
+    parser.add_argument('--out', type=Path, help="the campaign's folder; default that of the plan")
+    parser.add_argument('--hyperparameters', type=Path, help='changes to article.yaml')
+    parser.add_argument('--episodes', type=_count, default=1000, help='default %(default)s')
+    parser.add_argument(
+        '--record-every',
+        type=int,
+        default=100,
+        help='every how many episodes all topics are recorded; default %(default)s, 0 for never',
+    )
+    parser.add_argument(
+        '--stall',
+        type=float,
+        default=120.0,
+        help='longest time without a sign of life, in seconds; default %(default)s',
+    )
+    return parser
+
+
+def _count(text: str) -> int:
+    """Parse a positive whole number."""
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError(f'{text}, expected at least 1')
+    return value
+
+
+if __name__ == '__main__':
+    sys.exit(main())
