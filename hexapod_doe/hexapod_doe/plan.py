@@ -10,7 +10,14 @@ from pathlib import Path
 
 import numpy as np
 
-from hexapod_doe.designs.aliases import alias_sets, representatives
+from hexapod_doe.designs.aliases import (
+    alias_sets,
+    defining_relation,
+    defining_words,
+    representatives,
+    resolution,
+    word_length_pattern,
+)
 from hexapod_doe.designs.augment import aimed_model, d_optimal, foldover, semifold, variance_ratios
 from hexapod_doe.designs.blocks import confounded_with_blocks
 from hexapod_doe.designs.design import Design, fraction, from_generators
@@ -85,6 +92,27 @@ def _extend(plan: Plan, added: np.ndarray, how: str, args: argparse.Namespace) -
     _finish(further, np.vstack([plan.levels, added]), args.out)
 
 
+def _aliases(args: argparse.Namespace) -> None:
+    if args.plan:
+        plans = [read_plan(path) for path in args.plan]
+        levels, factors = np.vstack([plan.levels for plan in plans]), plans[0].factors
+    else:
+        design = _design(args)
+        levels, factors = design.levels, design.factors
+    words = defining_words(levels, factors)
+    print(f'{len(levels)} cases')
+    if words:
+        _print_words(defining_relation(words), resolution(words))
+        pattern = word_length_pattern(words, factors)
+        print(f'Words by length: {", ".join(f"{k} = {n}" for k, n in pattern.items())}')
+    for group in alias_sets(levels, factors, args.max_order):
+        print(group.text)
+
+
+def _print_words(relation: str, length: int | None) -> None:
+    print(f'{relation}, resolution {_ROMAN.get(length or 0, length)}')
+
+
 def _power(args: argparse.Namespace) -> None:
     design = _design(args)
     terms = representatives(design.levels, design.factors, args.max_order)
@@ -141,8 +169,7 @@ def _finish(plan: Plan, levels: np.ndarray, out: Path) -> None:
     assert settings is not None  # made here, not read
     print(f'{len(plan.rows)} runs: {settings.cases} cases x {settings.replicates} -> {out}')
     if settings.resolution is not None:
-        numeral = _ROMAN.get(settings.resolution, settings.resolution)
-        print(f'{settings.defining_relation}, resolution {numeral}')
+        _print_words(settings.defining_relation, settings.resolution)
     mixed = [g.text for g in alias_sets(levels, plan.factors, 2) if len(g.terms) > 1]
     print(f'Cannot separate: {"; ".join(mixed)}' if mixed else 'All terms to order 2 separate.')
 
@@ -151,6 +178,7 @@ _RUN: dict[str, Callable[[argparse.Namespace], None]] = {
     'make': _make,
     'fold': _fold,
     'augment': _augment,
+    'aliases': _aliases,
     'power': _power,
     'hours': _hours,
 }

@@ -3,12 +3,16 @@
 
 """The command line makes, extends and explains plans."""
 
+import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from hexapod_doe.designs.plan_file import read_plan
 from hexapod_doe.plan import main
+
+DATA = Path(__file__).parents[1] / 'data' / 'doe_cases'
 
 
 @pytest.fixture
@@ -26,6 +30,30 @@ def test_a_plan_is_made_as_a_module_without_a_command_name(tmp_path):
     assert 'I = ABCE = ABFG = ACDG = ADEF = BCDF = BDEG = CEFG, resolution IV' in result.stdout
     assert 'AB + CE + FG' in result.stdout
     assert len(read_plan(out).rows) == 16
+
+
+@pytest.mark.parametrize('case', ['alias_2_7_2', 'alias_2_7_3'])
+def test_the_words_and_the_alias_table_of_a_design(case, capsys):
+    expected = json.loads((DATA / f'{case}.json').read_text())
+    generators = ','.join(f'{factor}={word}' for factor, word in expected['generators'].items())
+    main(['aliases', '--generators', generators, '--max-order', '3'])
+    cases, words, pattern, *table = capsys.readouterr().out.splitlines()
+    assert cases == f'{expected["runs"]} cases'
+    assert words == f'{expected["defining_relation"]}, resolution IV'
+    counts = expected['word_length_pattern'].items()
+    assert pattern == f'Words by length: {", ".join(f"{k} = {n}" for k, n in counts)}'
+    assert table == [' + '.join(group) for group in expected['alias_table_up_to_3fi']]
+
+
+def test_the_alias_table_of_a_plan_and_its_follow_up(quarter, capsys):
+    out = quarter.with_name('more.csv')
+    main(['fold', str(quarter), '--on', 'C', '--out', str(out)])
+    capsys.readouterr()
+    main(['aliases', '--plan', str(quarter), str(out)])
+    cases, words, _, *table = capsys.readouterr().out.splitlines()
+    # Folding on C cancels the words that hold it, CEFG and ABCDF.
+    assert (cases, words) == ('64 cases', 'I = ABDEG, resolution V')
+    assert len(table) == 7 + 21
 
 
 def test_generators_and_signs_choose_the_fraction(tmp_path, capsys):

@@ -13,6 +13,7 @@ COMMANDS = {
     'make': 'make a plan (the default)',
     'fold': 'add the foldover or a semifold of a plan that has been run',
     'augment': 'add the cases that separate confounded terms best',
+    'aliases': 'print the words of a design and what it confounds, to an order',
     'power': 'say what a design is able to see',
     'hours': 'propose a design for a budget of machine time',
 }
@@ -35,6 +36,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_make(made['make'])
     _add_fold(made['fold'])
     _add_augment(made['augment'])
+    _add_aliases(made['aliases'])
     _add_power(made['power'])
     _add_hours(made['hours'])
     return parser
@@ -79,6 +81,18 @@ def _add_augment(parser: argparse.ArgumentParser) -> None:
         help='aliases to tell apart, such as CE,FG; every two-factor interaction by default',
     )
     _add_output(parser, replicates=None)
+
+
+def _add_aliases(parser: argparse.ArgumentParser) -> None:
+    _add_design(parser)
+    parser.add_argument(
+        '--plan',
+        type=Path,
+        nargs='+',
+        metavar='FILE',
+        help='the cases of these plans together, instead of a design',
+    )
+    parser.add_argument('--max-order', type=int, default=2, metavar='N', help='order (2)')
 
 
 def _add_power(parser: argparse.ArgumentParser) -> None:
