@@ -10,7 +10,7 @@ ROS_PACKAGES := hexapod_node hexapod_bringup ros2_mini
 CODE := $(PACKAGES) $(ROS_PACKAGES:%=ros_ws/src/%)
 INTERFACES := $(shell find ros_ws/src/hexapod_interfaces -type f)
 INSTALLED := $(shell find $(CODE) -name setup.py -o -name setup.cfg -o -name package.xml -o -name '*.xml' \
-	-o -name '*.yaml' -o -name '*.html*' -o -name '*.launch.xml' -not -path '*/__pycache__/*')
+	-o -name '*.yaml' -o -name '*.html*' -o -name '*.launch.xml' -o -name '*.urdf' -o -name '*.json' -not -path '*/__pycache__/*')
 ENTER := export HEXAPOD_VENV='$(abspath $(VENV))'; source setup.bash
 DEMO := bags/demo
 DEMO_EPISODES := 4

@@ -21,12 +21,15 @@ setup(
         (f'share/{NAME}/config', glob('config/*')),
         (f'share/{NAME}/agents', glob('agents/*')),
         (f'share/{NAME}/urdf', glob('urdf/*')),
+        (f'share/{NAME}/layouts', glob('layouts/*')),
     ],
     install_requires=['setuptools'],
     extras_require={'test': ['pytest']},
     zip_safe=False,
     entry_points={
         'console_scripts': [
+            'description_node = hexapod_bringup.description_node:main',
+            'layout = hexapod_bringup.layout:main',
             'realtime_report = hexapod_bringup.realtime_report:main',
             'worker_node = hexapod_bringup.worker_node:main',
         ],

@@ -1,0 +1,37 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Command line `layout`: how to see a run in Foxglove or in PlotJuggler, live or from a bag."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+from hexapod_bringup.layouts.foxglove import foxglove
+from hexapod_bringup.layouts.plotjuggler import plotjuggler
+
+NAMESPACE = 'worker_1'
+"""Namespace of the files that this package ships: that of worker.launch.xml."""
+MAKERS = {'foxglove': foxglove, 'plotjuggler': plotjuggler}
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Print a layout, or write it into a file."""
+    parser = argparse.ArgumentParser(prog='layout', description=__doc__)
+    parser.add_argument('program', choices=MAKERS)
+    parser.add_argument(
+        '--namespace', default=NAMESPACE, help=f'of the nodes to see (default {NAMESPACE})'
+    )
+    parser.add_argument('--out', type=Path, metavar='FILE', help='write it instead of printing')
+    options = parser.parse_args(arguments)
+    text = MAKERS[options.program](options.namespace)
+    if options.out is None:
+        print(text, end='')
+    else:
+        options.out.write_text(text, encoding='utf-8')
+
+
+if __name__ == '__main__':
+    main()
