@@ -7,14 +7,12 @@ from __future__ import annotations
 
 import argparse
 import os
-import shutil
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 import torch
-from hexapod_agent.checkpoint import CheckpointError
-from hexapod_agent.config import AgentConfig, ConfigError
+from hexapod_agent.config import AgentConfig
 from hexapod_agent.fleet.crew import Crew
 from hexapod_agent.fleet.fleet import Fleet
 from hexapod_agent.fleet.learners import Learners, SeparateLearners
@@ -22,18 +20,18 @@ from hexapod_agent.fleet.robots import Robots
 from hexapod_agent.fleet.stacked import StackedLearners
 from hexapod_agent.observation import ObservationSpec
 
-from hexapod_doe.campaigns.campaign import PLAN_FILE, Campaign
+from hexapod_doe.campaigns.campaign import Campaign
+from hexapod_doe.campaigns.campaign_lock import campaign_lock
 from hexapod_doe.campaigns.fleet_campaign import FleetCampaign
-from hexapod_doe.designs.plan_file import PlanError
-from hexapod_doe.errors import BagError
+from hexapod_doe.campaigns.plan_copy import place_plan
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Return 0 if every run is done, 1 if some failed, 2 after an error, 130 if interrupted."""
+    """Return 0 if every run is done, 1 if some are not, 2 after an error, 130 if interrupted."""
     args = _parser().parse_args(arguments)
     try:
         return _run(args)
-    except (BagError, CheckpointError, ConfigError, PlanError, FileNotFoundError) as error:
+    except (ValueError, OSError) as error:  # of the plan, its folder, or the configuration
         print(f'run_fleet: {error}', file=sys.stderr)
         return 2
     except KeyboardInterrupt:
@@ -63,37 +61,27 @@ def is_cpu(device: str) -> bool:
 
 def _run(args: argparse.Namespace) -> int:
     config = AgentConfig.load(args.hyperparameters)
-    campaign = Campaign.open(_plan_in(args.plan, args.out), attempts=1)
-    episodes = args.episodes or config.training.episodes
-    due = [row.observations for row in campaign.rows if row.run_id not in campaign.done]
-    if due:
-        slots = min(args.slots or (args.threads if is_cpu(args.device) else len(due)), len(due))
-        with (
-            Crew(args.threads) as crew,
-            FleetCampaign(campaign, config, episodes, args.device) as runs,
-        ):
-            build_fleet(config, due, slots, crew, args.device).train(runs.runs())
+    plan = place_plan(args.plan, args.out)
+    with campaign_lock(plan.resolve().parent, shared=True):
+        campaign = Campaign.open(plan, attempts=1)
+        campaign.check_writable()
+        _train(campaign, config, args)
     print(f'{len(campaign.done)} of {len(campaign.rows)} runs are in {campaign.directory}')
-    return 1 if campaign.failed else 0
+    return 0 if len(campaign.done) == len(campaign.rows) else 1
 
 
-def _plan_in(plan: Path, out: Path | None) -> Path:
-    """Return the plan in the campaign's folder, put there if need be.
-
-    Raises:
-        PlanError: the folder holds another plan.
-    """
-    if out is None or out.resolve() == plan.resolve().parent:
-        return plan
-    there = out / PLAN_FILE
-    if not there.exists():
-        out.mkdir(parents=True, exist_ok=True)
-        for suffix in ('.csv', '.json'):  # the rows, and how they were made
-            if plan.with_suffix(suffix).is_file():
-                shutil.copyfile(plan.with_suffix(suffix), there.with_suffix(suffix))
-    if there.read_bytes() != plan.read_bytes():
-        raise PlanError(f'{there}: another plan than {plan}, expected the same or none')
-    return there
+def _train(campaign: Campaign, config: AgentConfig, args: argparse.Namespace) -> None:
+    """Train what is due."""
+    due = [row.observations for row in campaign.rows if row.run_id not in campaign.done]
+    if not due:
+        return
+    episodes = args.episodes or config.training.episodes
+    slots = min(args.slots or (args.threads if is_cpu(args.device) else len(due)), len(due))
+    with (
+        Crew(args.threads) as crew,
+        FleetCampaign(campaign, config, episodes, args.device) as rows,
+    ):
+        build_fleet(config, due, slots, crew, args.device).train(rows.runs())
 
 
 def _parser() -> argparse.ArgumentParser:

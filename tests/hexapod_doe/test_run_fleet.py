@@ -17,13 +17,16 @@ from hexapod_agent.config import AgentConfig
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.train import train_episode
-from hexapod_agent.training import Trainer
+from hexapod_agent.training import Trainer, TrainingDivergedError
 from hexapod_doe.bags.digest import digest
 from hexapod_doe.bags.run_record import find_bags, read_run
 from hexapod_doe.bags.verify import verify
 from hexapod_doe.campaigns.campaign import Campaign
+from hexapod_doe.campaigns.campaign_lock import campaign_lock, row_lock
+from hexapod_doe.campaigns.failures import read_failures
+from hexapod_doe.campaigns.plan_copy import place_plan
 
-from hexapod_agent import checkpoint
+from hexapod_agent import checkpoint, run_checkpoint
 from hexapod_doe import plan, run_fleet
 
 EPISODES = 5
@@ -139,13 +142,42 @@ def test_another_plan_in_the_folder_is_refused(arguments, tmp_path, capsys):
     assert 'another plan' in capsys.readouterr().err
 
 
-def test_checkpoint_of_other_hyperparameters_is_refused(arguments, tmp_path, capsys):
-    row = Campaign.open(Path(arguments(tmp_path)[1])).rows[0]
+def test_checkpoint_of_other_hyperparameters_is_no_beginning(arguments, digests, tmp_path, capsys):
+    row = Campaign.open(place_plan(Path(arguments(tmp_path)[1]), tmp_path)).rows[0]
     trainer = Trainer(ObservationSpec(row.observations), AgentConfig.load(), row.seed)
-    path = tmp_path / 'runs' / f'{row.run_id}.checkpoint.pt'
-    checkpoint.save(path, trainer, to_resume=True)
-    assert run_fleet.main(arguments(tmp_path)) == 2
-    assert 'other hyper-parameters' in capsys.readouterr().err
+    run_checkpoint.keep(row.bag, trainer)
+    assert run_fleet.main(arguments(tmp_path)) == 0
+    assert f'run {row.run_id} begins anew' in capsys.readouterr().out
+    assert campaign_digests(tmp_path) == digests
+
+
+def test_row_of_another_process_is_left_to_it(arguments, tmp_path, capsys):
+    row = Campaign.open(place_plan(Path(arguments(tmp_path)[1]), tmp_path)).rows[0]
+    with campaign_lock(tmp_path, shared=True), row_lock(row.bag):
+        assert run_fleet.main(arguments(tmp_path, episodes=1)) == 1
+    printed = capsys.readouterr().out
+    assert f'run {row.run_id}: process' in printed
+    assert '3 of 4 runs' in printed
+
+
+def test_campaign_of_a_manager_is_refused(arguments, tmp_path, capsys):
+    with campaign_lock(tmp_path):
+        assert run_fleet.main(arguments(tmp_path)) == 2
+    assert 'is at it' in capsys.readouterr().err
+
+
+def test_failed_row_is_told_and_tried_again(arguments, tmp_path, monkeypatch):
+    monkeypatch.setattr(Trainer, 'learn', diverge)
+    assert run_fleet.main(arguments(tmp_path)) == 1
+    reasons = read_failures(tmp_path)
+    assert len(reasons) == 4
+    assert all(why == ['the loss is nan'] for why in reasons.values())
+    monkeypatch.undo()
+    assert run_fleet.main(arguments(tmp_path, episodes=1)) == 0
+
+
+def diverge(trainer: Trainer) -> None:
+    raise TrainingDivergedError('the loss is nan')
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import ExitStack
 from types import TracebackType
 from typing import Self
 
@@ -13,9 +14,12 @@ from hexapod_agent.config import AgentConfig
 from hexapod_agent.summary import EpisodeSummary
 
 from hexapod_doe.campaigns.campaign import Campaign, Row
+from hexapod_doe.campaigns.campaign_lock import row_lock
 from hexapod_doe.campaigns.dashboard import Dashboard
+from hexapod_doe.campaigns.failures import FailureLog
 from hexapod_doe.campaigns.fleet_row import FleetRow
 from hexapod_doe.campaigns.page_writer import PageWriter
+from hexapod_doe.errors import CampaignError
 
 _NAME = 'fleet'
 
@@ -30,6 +34,8 @@ class FleetCampaign:
         self._episodes, self._device = episodes, device
         self._dashboard = Dashboard(campaign, episodes)
         self._page = PageWriter(campaign.directory, self._dashboard.log)
+        self._locks: dict[str, ExitStack] = {}
+        self._failures: FailureLog | None = None
 
     def __enter__(self) -> Self:
         return self
@@ -46,32 +52,46 @@ class FleetCampaign:
     def runs(self) -> Iterator[FleetRow]:
         """Yield the rows that are due, each begun when it is asked for.
 
+        A row that another process is at stays with that one.
+
         Raises:
-            BagError: a row cannot be begun.
+            BagError: a row's bag cannot be written.
         """
         while (row := self._campaign.take(_NAME)) is not None:
-            self._dashboard.begin(self._place(row), row.run_id, row.observations)
-            yield FleetRow(
-                row, self._config, self._episodes, self._device, self._on_episode, self._on_end
-            )
+            try:
+                self._locks[row.run_id] = lock = ExitStack()
+                lock.enter_context(row_lock(row.bag))
+            except CampaignError as error:
+                self.log(str(error))
+                continue
+            self._dashboard.begin(_place(row), row.run_id, row.observations)
             self._page.refresh()
+            yield FleetRow(row, self._config, self._episodes, self._device, self)
 
-    def _place(self, row: Row) -> str:
-        """Return the name under which a row is shown while it is trained."""
-        return f'/{_NAME}/{row.run_id}'
+    def log(self, text: str) -> None:
+        """Show a line."""
+        self._dashboard.log(text)
 
-    def _on_episode(self, row: Row, summary: EpisodeSummary) -> None:
-        self._dashboard.episode(
-            self._place(row), row.run_id, summary.episode, summary.episode_return
-        )
+    def episode(self, row: Row, summary: EpisodeSummary) -> None:
+        """Show an episode."""
+        number, value = summary.episode, summary.episode_return
+        self._dashboard.episode(_place(row), row.run_id, number, value)
 
-    def _on_end(self, row: Row, error: Exception | None) -> None:
+    def end(self, row: Row, error: Exception | None) -> None:
         """Judge a row as the manager does: it is done if its bag is whole."""
         campaign = self._campaign
-        if error is not None:
-            campaign.fail(row, str(error))
-        done = error is None and campaign.complete(row)
-        sensors = f'{row.run_id}  sensors {row.observations or "none"}'
-        text = sensors if done else f'{row.run_id} failed: {campaign.reasons[row.run_id][-1]}'
-        self._dashboard.end(self._place(row), text, done=done)
+        self._locks.pop(row.run_id).close()
+        text = f'{row.run_id}  sensors {row.observations or "none"}'
+        done = campaign.complete(row, str(error or ''))
+        if not done:
+            reason = campaign.reasons[row.run_id][-1]
+            text = f'{row.run_id} failed: {reason}'
+            self._failures = self._failures or FailureLog(campaign.directory)
+            self._failures.add(row.run_id, _NAME, reason)
+        self._dashboard.end(_place(row), text, done=done)
         self._page.refresh()
+
+
+def _place(row: Row) -> str:
+    """Return the name under which a row is shown while it is trained."""
+    return f'/{_NAME}/{row.run_id}'
