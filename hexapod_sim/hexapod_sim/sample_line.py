@@ -49,6 +49,11 @@ class SampleLine(Generic[Item]):
         self._held: Item | None = None
         self.lost = 0
 
+    @property
+    def holds(self) -> bool:
+        """Whether every sample of the source gives one."""
+        return self._timing.hold
+
     def offer(self, stamp_ns: int, item: Item) -> list[tuple[int, Item]]:
         """Take a sample, and return (stamp, sample) of what is delivered by then."""
         if self._measured(stamp_ns):
