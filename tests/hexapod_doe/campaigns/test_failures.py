@@ -1,0 +1,24 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Failed tries outlive the manager that saw them, and no more than that one."""
+
+from hexapod_doe.campaigns.failures import FailureLog, read_failures
+
+
+def test_reasons_come_back_in_their_order(tmp_path):
+    log = FailureLog(tmp_path)
+    assert read_failures(tmp_path) == {}
+    log.add('case01', '/worker_1', 'sim/reset: "odd", and\ntwo lines')
+    log.add('case02', '/worker_2', 'disk')
+    log.add('case01', '/worker_2', 'again')
+    assert read_failures(tmp_path) == {
+        'case01': ['sim/reset: "odd", and\ntwo lines', 'again'],
+        'case02': ['disk'],
+    }
+
+
+def test_next_manager_begins_without_failures(tmp_path):
+    FailureLog(tmp_path).add('case01', '/worker_1', 'disk')
+    FailureLog(tmp_path)
+    assert read_failures(tmp_path) == {}
