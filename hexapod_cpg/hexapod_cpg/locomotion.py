@@ -63,7 +63,7 @@ class Locomotion:
         Raises:
             ValueError: The command is of no use; nothing has changed.
         """
-        targets = self.guard.limit(self.cpg.advance(command))
+        targets = self.guard.limit(self._advance(command))
         self.motion = Motion.WALKING
         return targets
 
@@ -73,7 +73,7 @@ class Locomotion:
         Raises:
             ValueError: The command is of no use; nothing has changed.
         """
-        targets = self.guard.follow(self.cpg.advance(command))
+        targets = self.guard.follow(self._advance(command))
         self.motion = Motion.WALKING
         return targets
 
@@ -83,3 +83,8 @@ class Locomotion:
         stands = np.array_equal(self.guard.position, robot.NEUTRAL_POSE)
         self.motion = Motion.STANDING if stands else Motion.STOPPING
         return targets
+
+    def _advance(self, command: Command) -> NDArray[np.float64]:
+        # What overflows is not finite in the end, and refused.
+        with np.errstate(over='ignore', invalid='ignore'):
+            return self.cpg.advance(command)
