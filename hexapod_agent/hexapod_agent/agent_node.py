@@ -91,10 +91,10 @@ class AgentNode(Node):
         finally:
             # Leave the callback that brought the last sample before its subscription goes.
             await sleep(self, 0.0)
-            if self._run is not None:
-                self._run.destroy()
-            self._run = None
+            ended, self._run = self._run, None
             self._reserved = False
+            if ended is not None:
+                ended.destroy()
 
     def _untrained(self, goal: TrainRun.Goal) -> tuple[ObservationSpec, AgentConfig, Trainer]:
         spec = ObservationSpec(goal.observations)

@@ -6,11 +6,15 @@
 from __future__ import annotations
 
 import math
+import time
+from collections.abc import Iterable
 from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from tensorboardX import SummaryWriter
+from tensorboardX.event_file_writer import EventsWriter
+from tensorboardX.proto.event_pb2 import Event, SessionLog
+from tensorboardX.summary import scalar
 
 from hexapod_agent.summary import EpisodeSummary
 
@@ -26,21 +30,40 @@ class EventLog:
             first_episode: Where the run begins or goes on; what files in the directory hold from
                 there on is not shown any more.
         """
-        # Names hold the second only: the suffix keeps a quick resumption from overwriting.
-        self._writer = SummaryWriter(
-            str(directory), purge_step=first_episode, filename_suffix=f'.{first_episode}'
-        )
+        directory.mkdir(parents=True, exist_ok=True)
+        self._directory = directory
+        self._broken = False
+        # Names hold the second only: the suffix keeps a quick resumption from overwriting. Not a
+        # SummaryWriter: its thread dies of a full disk, and then whoever writes waits for ever.
+        self._writer = EventsWriter(str(directory / 'events'), f'.{first_episode}')
+        start = SessionLog(status=SessionLog.START)
+        self._write([Event(step=first_episode, session_log=start)])
 
     def add(self, summary: EpisodeSummary) -> None:
-        """Write the curves' points of one episode; what is not known yet is left out."""
-        for tag, value in scalars(summary).items():
-            if math.isfinite(value):
-                self._writer.add_scalar(tag, value, summary.episode)
-        self._writer.flush()
+        """Write the curves' points of one episode; what is not known yet is left out.
+
+        Raises:
+            OSError: the disk refuses.
+        """
+        self._write(
+            Event(step=summary.episode, wall_time=time.time(), summary=scalar(tag, value))
+            for tag, value in scalars(summary).items()
+            if math.isfinite(value)
+        )
 
     def close(self) -> None:
-        """Write what is left."""
-        self._writer.close()
+        """Close the file, with every point in it unless the disk has refused one."""
+        if not self._broken:
+            self._writer.close()
+
+    def _write(self, events: Iterable[Event]) -> None:
+        try:
+            for event in events:
+                self._writer.write_event(event)
+            self._writer.flush()
+        except OSError as error:
+            self._broken = True
+            raise OSError(error.errno, error.strerror, str(self._directory)) from error
 
     def __enter__(self) -> Self:
         return self

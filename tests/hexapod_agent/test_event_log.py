@@ -4,6 +4,7 @@
 """TensorBoard files hold the numbers of episodes.csv, also after a run has been resumed."""
 
 import csv
+import errno
 import math
 import struct
 
@@ -80,3 +81,15 @@ def test_training_writes_them_beside_its_table(make_trainer, tmp_path):
         expected = pytest.approx(float(row['episode_return']), rel=1e-6)
         assert found['return/episode'][episode] == expected
         assert found['term/velocity'][episode] == pytest.approx(float(row['term_velocity']), 1e-5)
+
+
+def test_full_disk_is_an_error_and_no_hang(tmp_path):
+    log = EventLog(tmp_path)
+    log._writer.write_event = refuse
+    with pytest.raises(OSError, match=rf"No space left on device: '{tmp_path}'"):
+        log.add(summary(0, 0.5))
+    log.close()
+
+
+def refuse(event) -> None:
+    raise OSError(errno.ENOSPC, 'No space left on device')
