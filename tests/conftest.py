@@ -17,6 +17,20 @@ _PORT_BASE = 32768
 _LAST_DOMAIN = 101
 
 
+# For every way to start the tests: from the root, or by `colcon test` for one package.
+_MARKERS = (
+    'graph: starts rclpy nodes inside the test process',
+    'system: starts nodes as processes of their own',
+    'slow: a proof of minutes; run by make test-slow',
+)
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Make the marks of the tests known."""
+    for marker in _MARKERS:
+        config.addinivalue_line('markers', marker)
+
+
 def _reserve_domain() -> tuple[int, socket.socket]:
     """Return a ROS domain that no other test process has, and the socket that holds it."""
     for domain in range(1, _LAST_DOMAIN + 1):
