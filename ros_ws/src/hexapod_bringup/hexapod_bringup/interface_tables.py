@@ -18,7 +18,10 @@ from typing import Any
 
 import rclpy
 from hexapod_agent.agent_node import AgentNode
-from hexapod_agent.observation import CHANNELS
+from hexapod_agent.config import AgentConfig
+from hexapod_agent.observation import CHANNELS, LETTERS, ObservationSpec
+from hexapod_agent.play_node import PlayNode
+from hexapod_agent.training import Trainer
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.designs.design import fraction
@@ -28,24 +31,35 @@ from hexapod_doe.manager_node import PARAMETERS as MANAGER_PARAMETERS
 from hexapod_doe.manager_node import ManagerNode
 from hexapod_doe.player_node import PlayerNode
 from hexapod_doe.recorder_node import RecorderNode
+from hexapod_node.sync import LOCKSTEP, REALTIME
 from hexapod_sim.sim_node import SimNode
 from rclpy.action import get_action_server_names_and_types_by_node
+from rclpy.lifecycle import LifecycleNode
 from rclpy.node import Node
+
+from hexapod_agent import checkpoint
 
 SAMPLE_BAG = 'bags/sample'
 _NODES = {
     'sim': (SimNode, 'hexapod_sim sim_node'),
     'cpg': (CpgNode, 'hexapod_cpg cpg_node'),
     'agent': (AgentNode, 'hexapod_agent agent_node'),
+    'play': (PlayNode, 'hexapod_agent play_node'),
     'recorder': (RecorderNode, 'hexapod_doe recorder_node'),
     'player': (PlayerNode, 'hexapod_doe player_node'),
     'manager': (ManagerNode, 'hexapod_doe manager_node'),
 }
 # Parameters that the nodes were given here, and their defaults.
-_GIVEN = {p.name: str(p.default) for p in MANAGER_PARAMETERS} | {'bag': ''}
+_GIVEN = {
+    p.name: str(p.default) for p in MANAGER_PARAMETERS if p.name in ('plan', 'local_workers')
+}
+_GIVEN |= {'bag': '', 'checkpoint': '', 'sync': LOCKSTEP}
 # What every rclpy node has is not worth a row.
 _COMMON_TOPICS = ('/rosout', '/parameter_events', '/diagnostics')
 _COMMON_SERVICES = re.compile(r'/((describe|get|list|set)_parameter\w*|get_type_description)$')
+_LIFECYCLE_SERVICES = re.compile(
+    r'/(change_state|get_state|get_available_\w+|get_transition_graph)$'
+)
 
 
 def sensor_table() -> str:
@@ -76,7 +90,12 @@ def node_tables(bag: Path) -> str:
     with TemporaryDirectory() as directory:
         plan = Path(directory) / 'plan.csv'
         write_plan(make_plan(fraction('eighth')), plan)
+        # In real time the node `play` subscribes by itself: here to all that it ever does.
+        agent = Path(directory) / 'agent.pt'
+        trainer = Trainer(ObservationSpec(LETTERS), AgentConfig.load(), 0)
+        checkpoint.save(agent, trainer, to_resume=False)
         given = [f'plan:={plan}', 'local_workers:=0', f'bag:={bag}']
+        given += [f'checkpoint:={agent}', f'play:sync:={REALTIME}']
         rclpy.init(args=['--ros-args', *(word for value in given for word in ('-p', value))])
         sections = []
         for name, (make, executable) in _NODES.items():
@@ -121,9 +140,12 @@ def _interface(node: Node) -> Iterator[tuple[str, ...]]:
     ends += [('serves', s.service_name, s.srv_type, 'srv') for s in node.services]
     ends += [('calls', c.service_name, c.srv_type, 'srv') for c in node.clients]
     for what, name, kind, interface in ends:
-        if name not in _COMMON_TOPICS and not _COMMON_SERVICES.search(name):
+        common = _COMMON_SERVICES.search(name) or _LIFECYCLE_SERVICES.search(name)
+        if name not in _COMMON_TOPICS and not common:
             package = kind.__module__.split('.')[0]
             yield what, _code(name), f'`{package}/{interface}/{kind.__name__}`'
+    if isinstance(node, LifecycleNode):
+        yield 'serves', 'the transitions of a managed node', '`lifecycle_msgs/srv/ChangeState`, …'
     own = (node.get_name(), node.get_namespace())
     for name, kinds in get_action_server_names_and_types_by_node(node, *own):
         yield 'action', _code(name), f'`{kinds[0]}`'
