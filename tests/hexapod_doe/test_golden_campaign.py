@@ -12,6 +12,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
 import pytest
 from hexapod_doe.designs.terms import terms_up_to
 from hexapod_doe.fitting.model import AliasedTermsError, estimable_terms
@@ -114,6 +115,21 @@ def test_predictions(article: dict[str, Any], golden: dict[str, Any]) -> None:
         assert [value is None for value in values] == blank
         known = [value for value in values if value is not None]
         assert known == pytest.approx([v for v in expected[key] if v is not None], rel=1e-8)
+
+
+def test_the_top_three(article: dict[str, Any], golden: dict[str, Any]) -> None:
+    best = sorted(article['predictions'], key=lambda item: item['rank'])[:3]
+    for found, expected in zip(best, golden['top3'], strict=True):
+        assert found['label'] == expected['label']
+        assert found['fit'] == pytest.approx(expected['fit'], rel=1e-8)
+        for kind in ('ci', 'pi'):
+            assert found[kind] == pytest.approx(expected[kind], rel=1e-8)
+
+
+def test_case_means(article: dict[str, Any], golden: dict[str, Any]) -> None:
+    table = pd.DataFrame(article['table'])
+    means = table.groupby('case')['response'].mean()
+    assert means.tolist() == pytest.approx(golden['step1_case_means'], **EXACT)
 
 
 def test_ranking_and_main_effects(article: dict[str, Any], golden: dict[str, Any]) -> None:

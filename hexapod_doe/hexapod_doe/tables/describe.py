@@ -12,6 +12,7 @@ from hexapod_doe.analysis.findings import TwoPart
 from hexapod_doe.analysis.results import Analysis, DesignSummary
 from hexapod_doe.designs.aliases import defining_relation, defining_words, resolution
 from hexapod_doe.fitting.model import corners, labels
+from hexapod_doe.fitting.transform import BOUNDS
 from hexapod_doe.tables.table import BLOCK, RunTable
 
 _MISSING_SHARE = 0.25
@@ -84,6 +85,11 @@ def model_caveats(analysis: Analysis) -> list[str]:
         low, high = transform.lambda_ci
         if low <= 1 <= high:
             caveats.append('λ = 1 is within its interval: the response needs no transform.')
+        if low <= BOUNDS[0] or high >= BOUNDS[1]:
+            caveats.append(
+                f'The interval of λ, {low:.2g} to {high:.2g}, ends where the search ended: these '
+                'runs hardly tell λ.'
+            )
     attribution = analysis.attribution
     if attribution is not None and attribution.ambiguous:
         names = ', '.join(' or '.join(group) for group in attribution.ambiguous.values())

@@ -39,8 +39,8 @@ def unbalanced() -> tuple[pd.DataFrame, np.ndarray, np.ndarray]:
 def test_a_factorial_in_blocks_as_printed(
     chemical: tuple[pd.DataFrame, np.ndarray, np.ndarray],
 ) -> None:
-    # Its analysis of variance: blocks 6.50, A 208.33, B 75.00, AB 8.33, error 24.84 on 6 degrees of freedom;
-    # F of A 50.32, of B 18.12, of AB 2.01.
+    # Its analysis of variance: blocks 6.50, A 208.33, B 75.00, AB 8.33, error 24.84 on 6 degrees
+    # of freedom; F of A 50.32, of B 18.12, of AB 2.01.
     levels, y, batch = chemical
     fit = ols(levels, y, TERMS, block_basis(batch))
     squares = dict(zip(fit.terms, 12 * fit.coef**2, strict=True))
@@ -57,8 +57,8 @@ def test_a_factorial_in_blocks_as_printed(
 
 def test_a_block_generator_hides_its_interaction() -> None:
     # Montgomery, Example 7.2: the filtration data with 20 less in the block where ABCD is +1.
-    # Its analysis of variance: blocks 1387.5625; A 1870.5625, C 390.0625, D 855.5625, AC 1314.0625,
-    # AD 1105.5625; error 187.5625 on 9 degrees of freedom, of a total of 7110.9375.
+    # Its analysis of variance: blocks 1387.5625; A 1870.5625, C 390.0625, D 855.5625,
+    # AC 1314.0625, AD 1105.5625; error 187.5625 on 9 degrees of freedom, of a total of 7110.9375.
     rows = pd.read_csv(DATA / 'filtration_2_4.csv')
     levels = rows[list('ABCD')]
     block = levels.prod(axis=1).to_numpy()

@@ -4,11 +4,13 @@
 import numpy as np
 import pandas as pd
 import pytest
-from hexapod_doe.designs.design import fraction
+from hexapod_doe.designs.design import factor_letters, fraction, from_generators
 from hexapod_doe.errors import AnalysisError
 from hexapod_doe.fitting.model import corners, estimable_terms, model_matrix
 from hexapod_doe.fitting.pure_error import curvature
 from hexapod_doe.fitting.regression import ols
+from hypothesis import given
+from hypothesis import strategies as st
 
 
 def random_table(rng: np.random.Generator, replicates: int = 3) -> tuple[pd.DataFrame, np.ndarray]:
@@ -17,9 +19,36 @@ def random_table(rng: np.random.Generator, replicates: int = 3) -> tuple[pd.Data
     return levels, rng.normal(500, 80, len(levels))
 
 
-def test_press_is_the_explicit_leave_one_out() -> None:
-    levels, y = random_table(np.random.default_rng(1))
-    terms = estimable_terms(levels, 2)
+@st.composite
+def random_fractions(draw: st.DrawFn) -> pd.DataFrame:
+    """Draw regular fractions of 3 to 6 factors with random generators, run two or three times."""
+    count = draw(st.integers(3, 6))
+    letters = factor_letters(count)
+    base = letters[: draw(st.integers(2, count))]
+    words = st.sets(st.sampled_from(base), min_size=1).map(lambda word: ''.join(sorted(word)))
+    generators = ','.join(f'{letter}={draw(words)}' for letter in letters[len(base) :])
+    levels = from_generators(generators, count).levels
+    repeated = np.repeat(levels, draw(st.integers(2, 3)), axis=0)
+    return pd.DataFrame(repeated, columns=list(letters))
+
+
+@given(random_fractions(), st.integers(1, 3))
+def test_every_run_and_every_corner_of_a_fraction_has_the_leverage_p_over_n(
+    levels: pd.DataFrame, max_order: int
+) -> None:
+    fit = ols(levels, np.arange(len(levels)) ** 1.5, estimable_terms(levels, max_order))
+    share = len(fit.terms) / len(levels)
+    assert fit.leverage == pytest.approx(np.full(len(levels), share))
+    points = model_matrix(corners(list(levels.columns)), fit.terms)
+    assert fit.unscaled_variance(points) == pytest.approx(np.full(len(points), share))
+
+
+@given(random_fractions(), st.integers(1, 2), st.integers(0, 999))
+def test_press_is_the_explicit_leave_one_out(
+    levels: pd.DataFrame, max_order: int, seed: int
+) -> None:
+    y = np.random.default_rng(seed).normal(500, 80, len(levels))
+    terms = estimable_terms(levels, max_order)
     matrix = model_matrix(levels, terms)
     expected = 0.0
     for row in range(len(y)):

@@ -214,6 +214,13 @@ def test_negative_rewards_with_box_cox(run: Run) -> None:
     assert analysis['predictions'][-1]['fit'] == pytest.approx(10, abs=30)  # 300 + 110 - 400
 
 
+def test_a_lambda_that_the_search_cuts_off(run: Run) -> None:
+    # The range is a hundredth of the mean, so that every power is nearly linear: no λ is better.
+    rows = campaign()
+    analysis = run(rows.assign(y=30_000 + rows['y']), '--transform', 'boxcox')
+    caveat(analysis, 'ends where the search ended: these runs hardly tell λ')
+
+
 def test_repeated_rows_count_once(run: Run) -> None:
     rows = campaign()
     analysis = run(pd.concat([rows, rows.iloc[[4]]]))
