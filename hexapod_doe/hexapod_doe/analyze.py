@@ -56,7 +56,9 @@ def summary(analysis: Analysis) -> str:
 def _tables(args: argparse.Namespace) -> list[RunTable]:
     if args.bags:
         response = args.response or DEFAULT_RESPONSE
-        return read_bags(args.bags, args.factors, response, args.blocks)
+        # The article knows no blocks, whatever the plan says.
+        blocks = '' if args.article and args.blocks is None else args.blocks
+        return read_bags(args.bags, args.factors, response, blocks)
     return [
         table
         for path in args.table

@@ -36,7 +36,7 @@ def build_parser() -> argparse.ArgumentParser:
         '--blocks',
         metavar='NAME',
         help='column, or key of the metadata of bags, whose differences are taken out, such as '
-        "seed; '' for none (default of bags: what the plan says)",
+        "seed; '' for none (default of bags: what the plan says, or none with --article)",
     )
     model = parser.add_argument_group('model')
     terms = model.add_mutually_exclusive_group()

@@ -106,7 +106,8 @@ def checks(analysis: Analysis) -> Table | None:
     return Table(
         'checks',
         'Tests of the model',
-        'A small p says that the model misses something that the runs show.',
+        'A small p says that the model misses something that the runs show; of blocks, that they '
+        'differ.',
         {
             'test': [name for name, *_ in rows],
             'of': [what for _, what, *_ in rows],

@@ -100,6 +100,26 @@ def test_the_plan_says_that_seeds_are_blocks(
         read_bags([tmp_path / 'tour'], blocks='machine')
 
 
+@pytest.mark.parametrize(('options', 'blocks'), [([], 2), (['--article', '--trim-worst', '1'], 0)])
+def test_the_article_knows_no_blocks(
+    tmp_path: Path,
+    write_bag: WriteBag,
+    monkeypatch: pytest.MonkeyPatch,
+    options: list[str],
+    blocks: int,
+) -> None:
+    monkeypatch.setattr(analyze, 'write_report', lambda analysis, out: out / 'index.html')
+    plan = make_plan(fraction('half', 3), 2, common_seeds=True)
+    write_plan(plan, tmp_path / 'tour' / 'plan.csv')
+    for number, row in enumerate(plan.rows.to_dict('records')):
+        metadata = {str(key): str(value) for key, value in row.items()}
+        write_bag(f'tour/runs/{row["run_id"]}', episodes=1 + number, samples=0, **metadata)
+    source = [str(tmp_path / 'tour'), '--factors', 'A,B,C', '--terms', 'A,B']
+    assert analyze.main([*source, *options, '--out', str(tmp_path / 'out')]) == 0
+    analysis = json.loads((tmp_path / 'out' / 'analysis.json').read_text())
+    assert analysis['design']['blocks'] == blocks
+
+
 def test_unfinished_runs_are_left_out(campaign: Path, write_bag: WriteBag) -> None:
     write_bag('tour/runs/late', episodes=1, samples=0, run_id='late', status='recording')
     (table,) = read_bags([campaign])
