@@ -7,10 +7,6 @@ RUN_RECORD = 'hexapod_run'
 """Name of the MCAP metadata records that tell which run it is; what is written last holds."""
 EPISODE_RESULT = 'hexapod_interfaces/msg/EpisodeResult'
 """Type of the one topic that every run has."""
-LINE_OFFSET = 'hexapod_interfaces/msg/LineOffset'
-"""Type of the topic that tells how far the robot is from its line."""
-STEP_OUTCOME = 'hexapod_interfaces/msg/StepOutcome'
-"""Type of the topic that tells where an episode with all its topics begins."""
 
 # Values of the metadata key `status`.
 RECORDING = 'recording'
