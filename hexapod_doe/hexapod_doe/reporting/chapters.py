@@ -10,13 +10,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from hexapod_doe.analysis.results import Analysis, Step
-from hexapod_doe.reporting import findings, models, tables
+from hexapod_doe.reporting import findings, glossary, models, tables
 from hexapod_doe.reporting.figures import (
     effects,
     learning,
     predictions,
     purchase,
     residuals,
+    reward_terms,
     significance,
 )
 from hexapod_doe.reporting.figures.chart import Chart
@@ -114,7 +115,13 @@ CHAPTERS = (
         'runs',
         'The trainings',
         'Every run, and how it learned.',
-        (learning.runs_by_case, learning.learning_curves, tables.runs),
+        (
+            learning.runs_by_case,
+            learning.learning_curves,
+            reward_terms.reward_terms,
+            tables.runs,
+            glossary.glossary,
+        ),
     ),
     Chapter(
         'diagnostics',

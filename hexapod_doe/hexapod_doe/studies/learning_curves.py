@@ -9,6 +9,7 @@ import matplotlib as mpl
 import pandas as pd
 from matplotlib.axes import Axes
 
+from hexapod_doe.reporting.figures.outliers import outliers
 from hexapod_doe.reporting.figures.parts import grid
 from hexapod_doe.reporting.figures.style import BLUE, INK, MUTED, ORANGE, RC, WIDE
 
@@ -52,10 +53,3 @@ def _draw_set(axes: Axes, curves: pd.DataFrame) -> None:
             f'seed {seed}', (smooth.index[-1], ends[seed]), (-3, 0), textcoords='offset points',
             ha='right', va='center', fontsize=8, color=INK,
         )  # fmt: skip
-
-
-def outliers(values: 'pd.Series[float]') -> list[int]:
-    """Return the names of values beyond 1.5 interquartile ranges of the quartiles (Tukey 1977)."""
-    low, high = values.quantile([0.25, 0.75])
-    fence = 1.5 * (high - low)
-    return list(values.index[(values < low - fence) | (values > high + fence)])

@@ -19,8 +19,8 @@ from hexapod_doe.fitting.model import EMPTY_SET
 from hexapod_doe.tables.bag_response import DEFAULT_RESPONSE, response_of
 from hexapod_doe.tables.table import (
     BLOCK,
-    CURVE_COLUMNS,
     RESPONSE,
+    TERM_PREFIX,
     RunTable,
     TableError,
     block_fault,
@@ -175,7 +175,7 @@ def _known(run: RunRecord, key: str) -> str:
 
 
 def _curves(runs: Iterable[RunRecord], rows: pd.DataFrame) -> pd.DataFrame:
-    """Return the learning curves of the runs, in the order of the rows."""
+    """Return the learning curves of the runs and of their reward terms, in the rows' order."""
     episodes = {run.run_id: run.episodes for run in runs}
     parts = [
         pd.DataFrame(
@@ -188,7 +188,7 @@ def _curves(runs: Iterable[RunRecord], rows: pd.DataFrame) -> pd.DataFrame:
                 'return': episodes[row['run_id']]['episode_return'].to_numpy(float),
                 'average': episodes[row['run_id']]['average_return'].to_numpy(float),
             }
-        )
+        ).join(episodes[row['run_id']].filter(like=TERM_PREFIX).reset_index(drop=True))
         for row in rows.to_dict('records')
     ]
-    return pd.concat(parts, ignore_index=True)[list(CURVE_COLUMNS)]
+    return pd.concat(parts, ignore_index=True)

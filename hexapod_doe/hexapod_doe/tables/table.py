@@ -16,6 +16,8 @@ from hexapod_doe.fitting.model import labels
 RESPONSE = 'response'
 BLOCK = 'block'
 CURVE_COLUMNS = ('run_id', 'label', 'case', 'replicate', 'episode', 'return', 'average')
+TERM_PREFIX = 'term_'
+"""Begins the columns of the curves that hold reward terms."""
 
 
 class TableError(AnalysisError):

@@ -6,7 +6,6 @@
 import pandas as pd
 import pytest
 from hexapod_doe.studies import learning
-from hexapod_doe.studies.learning_curves import outliers
 
 ARGUMENTS = ['--sets', 'C', '--seeds', '1', '--episodes', '2', '--starts', '2']
 CONFIG = """
@@ -48,9 +47,3 @@ def test_study_leaves_its_table_and_is_not_repeated(tmp_path, capsys, monkeypatc
     monkeypatch.setattr(learning, '_python', fail)
     learning.main(arguments)
     assert capsys.readouterr().out == first
-
-
-def test_outliers_are_beyond_tukeys_fences():
-    # Quartiles 2 and 4, so the fences are at -1 and 7.
-    assert outliers(pd.Series({1: 1.0, 2: 2.0, 3: 3.0, 4: 4.0, 5: 7.5})) == [5]
-    assert outliers(pd.Series({1: 1.0, 2: 2.0, 3: 3.0, 4: 4.0, 5: 6.5})) == []

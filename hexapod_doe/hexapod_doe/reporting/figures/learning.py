@@ -11,6 +11,7 @@ from matplotlib.ticker import MaxNLocator
 
 from hexapod_doe.analysis.results import Analysis
 from hexapod_doe.reporting.figures.chart import Chart
+from hexapod_doe.reporting.figures.outliers import outliers
 from hexapod_doe.reporting.figures.parts import canvas, failed, grid, is_wide, unit_label
 from hexapod_doe.reporting.figures.style import BLUE, INK, MUTED, ORANGE, SURFACE
 from hexapod_doe.reporting.formats import count, number
@@ -61,7 +62,8 @@ def learning_curves(analysis: Analysis) -> Chart | None:
     """Draw the moving average return of every run, one panel per case, with the case's mean."""
     if analysis.curves.empty:
         return None
-    curves = analysis.curves[['case', 'label', 'run_id', 'episode', 'average']]
+    columns = ['case', 'label', 'run_id', 'replicate', 'episode', 'average']
+    curves = analysis.curves[columns]
     best = analysis.table.groupby('case')['response'].mean().nlargest(MAX_PANELS).index
     data = _thinned(curves[curves['case'].isin(best)])
     cases = data.drop_duplicates('case').sort_values('case')[['case', 'label']]
@@ -80,8 +82,9 @@ def learning_curves(analysis: Analysis) -> Chart | None:
     return Chart(
         'learning_curves',
         _curves_title(curves),
-        'Thin lines are training runs, the thick line is the mean of the case; all panels share '
-        'their axes. The number is the case, the letters are its sensors.'
+        'Thin lines are training runs, the thick line is the mean of the case; a replicate that '
+        'ends beyond 1.5 interquartile ranges of the others is named. All panels share their '
+        'axes. The number is the case, the letters are its sensors.'
         + (f' The {MAX_PANELS} best cases are shown.' if len(cases) == MAX_PANELS else ''),
         data,
         draw,
@@ -117,6 +120,12 @@ def _thinned(curves: pd.DataFrame) -> pd.DataFrame:
 def _draw_case(axes: Axes, data: pd.DataFrame) -> None:
     for _, run in data.groupby('run_id'):
         axes.plot(run['episode'], run['average'], color=MUTED, linewidth=0.6, alpha=0.7)
+    last = data.sort_values('episode').groupby('replicate').last()
+    for replicate in outliers(last['average']):
+        axes.annotate(
+            f'replicate {replicate}', last.loc[replicate, ['episode', 'average']], (-2, 0),
+            textcoords='offset points', ha='right', va='center', fontsize=6.5, color=ORANGE,
+        )  # fmt: skip
     mean = data.groupby('episode')['average'].mean()
     style = 'o-' if len(mean) <= 10 else '-'
     axes.plot(mean.index, mean, style, color=BLUE, linewidth=1.7, markersize=3)
