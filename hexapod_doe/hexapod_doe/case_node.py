@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import os
+import signal
 from functools import partial
 
 from hexapod_agent.agent_node import AgentNode
@@ -17,6 +18,7 @@ from hexapod_node.spin import run
 from hexapod_sim.sim_node import SimNode
 from rclpy.action import ActionClient
 from rclpy.node import Node
+from rclpy.signals import uninstall_signal_handlers
 from rclpy.task import Future
 
 from hexapod_doe.campaigns.campaign import Row, RunSettings
@@ -32,7 +34,7 @@ class CaseNode(Node):
     """Sends its one goal, follows it, and ends the process with what became of it.
 
     Attributes:
-        exit_status: 0 once the row is trained, 1 once that has failed, None before.
+        exit_status: 0 once the row is trained, 1 once it has failed or was stopped, None before.
     """
 
     def __init__(self, row: Row, settings: RunSettings, stall_s: float) -> None:
@@ -53,6 +55,10 @@ class CaseNode(Node):
         except WorkerLostError as error:
             return str(error)
         return ended.message
+
+    def stop(self) -> None:
+        """End the process in order; what the row has so far stays."""
+        self.exit_status = 1
 
     def _on_episode(self, episode: int, episode_return: float) -> None:
         self.get_logger().info(
@@ -82,4 +88,9 @@ def train_row(row: Row, settings: RunSettings, stall_s: float) -> None:
 
 def _make_nodes(row: Row, settings: RunSettings, stall_s: float) -> list[Node]:
     worker: list[Node] = [SimNode(), CpgNode(), RecorderNode(), AgentNode()]
-    return [*worker, CaseNode(row, settings, stall_s)]
+    case = CaseNode(row, settings, stall_s)
+    # The middleware's own handlers would end it under the feet of a worker at work.
+    uninstall_signal_handlers()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: case.stop())
+    return [*worker, case]
