@@ -60,8 +60,7 @@ async def listen_and_check(
         probe.clear()
         await sleep(node, seconds)
         return check_sensors(spec, evidence(spec, probe), limits, reliable)
-    finally:
-        await sleep(node, 0.0)  # leave the callback of a subscription before it goes
+    finally:  # in the callback of a timer: no subscription goes amid its own
         probe.destroy()
 
 

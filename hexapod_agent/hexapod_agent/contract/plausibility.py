@@ -15,7 +15,12 @@ from hexapod_agent.contract.fields import RANGE_LIMITS
 from hexapod_agent.contract.finding import Finding
 from hexapod_agent.contract.subject import Subject
 from hexapod_agent.contract.timing import stamps_of
-from hexapod_agent.contract.units import OTHER_UNITS, conversion, other_unit
+from hexapod_agent.contract.units import (
+    OTHER_UNITS,
+    conversion,
+    other_unit,
+    usual_magnitude,
+)
 
 # The mean force on all feet is the weight; friction, tares and steps make it uncertain.
 _WEIGHT = TOTAL_MASS * GRAVITY
@@ -80,6 +85,8 @@ def check_motion(subject: Subject) -> Iterator[Finding]:
     """Check joint velocities against the change of the joint angles: unit and sign."""
     if 'joint_velocities' not in subject.channel.readings:
         return
+    if usual_magnitude(subject, 'position') > subject.channel.limits[0]:
+        return  # angles in degrees say nothing about the velocities
     fitted = _slope(subject)
     if fitted is None or _LEAST_SLOPE <= fitted <= _MOST_SLOPE:
         return

@@ -10,7 +10,6 @@ from collections.abc import Iterator
 
 import numpy as np
 from hexapod_sim.robot import GRAVITY
-from numpy.typing import NDArray
 
 from hexapod_agent.contract.fields import Field, observed_fields
 from hexapod_agent.contract.finding import Finding
@@ -36,12 +35,16 @@ _AT_REST = 0.01
 def check_units(subject: Subject) -> Iterator[Finding]:
     """Check each observed field's magnitudes."""
     for field in observed_fields(subject.channel):
-        magnitudes = np.abs(subject.stack(field.path))
-        usual = float(np.percentile(magnitudes, _USUAL_PERCENTILE))
+        usual = usual_magnitude(subject, field.path)
         if usual > field.limit:
             yield _wrong_unit(subject, field, usual)
         else:
-            yield from _check_scale(subject, field, magnitudes)
+            yield from _check_scale(subject, field)
+
+
+def usual_magnitude(subject: Subject, path: str) -> float:
+    """Return the magnitude that few of a field's numbers exceed."""
+    return float(np.percentile(np.abs(subject.stack(path)), _USUAL_PERCENTILE))
 
 
 def other_unit(unit: str, found: float, most: float, least: float = 0.0) -> tuple[str, float]:
@@ -75,9 +78,7 @@ def _wrong_unit(subject: Subject, field: Field, usual: float) -> Finding:
     )
 
 
-def _check_scale(
-    subject: Subject, field: Field, magnitudes: NDArray[np.float64]
-) -> Iterator[Finding]:
+def _check_scale(subject: Subject, field: Field) -> Iterator[Finding]:
     """Warn of numbers that are clipped, and say where the unit cannot be seen."""
     values = subject.stack(field.path)
     clipped = float((np.abs(values - field.center) > field.scale).mean())
@@ -91,7 +92,7 @@ def _check_scale(
             'see whether the robot moves as in training; the agent sees these numbers clipped',
             'warning',
         )
-    if field.unit in ('rad/s', 'm/s') and magnitudes.max() < _AT_REST * field.scale:
+    if field.unit in ('rad/s', 'm/s') and np.abs(values).max() < _AT_REST * field.scale:
         yield subject.finding(
             'at_rest',
             field.path,

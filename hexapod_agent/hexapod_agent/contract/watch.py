@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -37,6 +38,8 @@ from hexapod_agent.observation import Channel
 _PERSISTENT = ('wrong_unit', 'flipped_gravity', 'wrong_axes')
 _SECOND = 1_000_000_000 // CONTROL_PERIOD_NS
 _SMOOTHING = 2.0 / _SECOND
+# How far steps may take that mean from 9.81 m/s^2, relative.
+_MEAN_ERROR = 0.6
 # What a foot's impact gives; a single wild number must not stay in the mean for long.
 _MOST_FORCE = 10.0 * GRAVITY
 
@@ -68,6 +71,7 @@ class MessageWatch:
         frames = dict(zip(channel.topics, channel.frames, strict=False))
         self._frame = self._limits.frames.get(topic, frames.get(topic))
         self._force = np.array([0.0, 0.0, GRAVITY])
+        self._size = GRAVITY
         self._persisting: Finding | None = None
         self._good = 0
 
@@ -125,24 +129,23 @@ class MessageWatch:
             return None
         jolt = np.clip(force, -_MOST_FORCE, _MOST_FORCE)
         self._force += _SMOOTHING * (jolt - self._force)
-        if self._force[2] >= GRAVITY * math.cos(self._limits.max_tilt):
+        self._size += _SMOOTHING * (math.hypot(*jolt.tolist()) - self._size)
+        small = self._size < (1.0 - _MEAN_ERROR) * GRAVITY
+        if not small and self._force[2] >= GRAVITY * math.cos(self._limits.max_tilt):
             return None
         values = {
             ACCELERATION: self._force,
             ACCELERATION_COVARIANCE: taken.values[ACCELERATION_COVARIANCE],
         }
         mean = Sample(0, 0, taken.frame, (), values)
-        return next(
-            (found for found in inertial.check_gravity(self._subject(mean)) if _refuses(found)),
-            None,
-        )
+        # A mean on its way from up to down is small as well: its size alone says nothing then.
+        found = inertial.check_gravity(self._subject(mean, _MEAN_ERROR))
+        return next((each for each in found if (each.kind == 'wrong_unit') == small), None)
 
-    def _subject(self, taken: Sample) -> Subject:
+    def _subject(self, taken: Sample, gravity_error: float | None = None) -> Subject:
+        limits = self._limits
+        if gravity_error is not None:
+            limits = replace(limits, gravity_error=gravity_error)
         heard = TopicEvidence(self._topic, samples=(taken,))
         evidence = Evidence({self._topic: heard}, 0)
-        return Subject(self._channel, self._topic, evidence, self._limits, reliable=False)
-
-
-def _refuses(finding: Finding) -> bool:
-    """Whether it is a fault; the size of a walking robot's specific force alone is none."""
-    return finding.level == 'fault' and finding.kind != 'wrong_unit'
+        return Subject(self._channel, self._topic, evidence, limits, reliable=False)

@@ -21,6 +21,16 @@ def test_flipped_gravity_is_named(robot, topic: str) -> None:
     assert 'negate it' in fault.cure
 
 
+def test_the_steps_of_a_walking_robot_are_no_other_unit(robot) -> None:
+    """Ten samples with a standard deviation of 4 m/s²: their mean is uncertain by 1.3 m/s²."""
+    generator = np.random.default_rng(6)
+    robot.values('imu/data', 'linear_acceleration', lambda a: a + generator.normal(0, 4.0, 3))
+    robot.values('imu/data', 'linear_acceleration', lambda a: a - np.array([0.0, 0.0, 1.6]))
+    assert robot.report().passed
+    robot.values('imu/data', 'linear_acceleration', lambda a: a - np.array([0.0, 0.0, 2.0]))
+    assert robot.fault().kind == 'wrong_unit'
+
+
 def test_turned_axes_are_named(robot) -> None:
     robot.values('imu/data_raw', 'linear_acceleration', lambda a: np.roll(a, 1))
     fault = robot.fault()

@@ -36,10 +36,10 @@ def test_another_unit_is_named_with_its_cure(robot, topic, path, factor, unit) -
     if topic == 'body/height':
         for limit in ('min_range', 'max_range'):
             robot.values(topic, limit, lambda values: values * factor)
-    found = [fault for fault in robot.report().faults if fault.field == path]
-    assert [fault.kind for fault in found] == ['wrong_unit']
-    assert f'which looks like {unit}' in found[0].found
-    assert 'divide by' in found[0].cure
+    fault = robot.fault()
+    assert (fault.kind, fault.field) == ('wrong_unit', path)
+    assert f'which looks like {unit}' in fault.found
+    assert 'divide by' in fault.cure
 
 
 @pytest.mark.parametrize('factor', [0.101972, 101.972])

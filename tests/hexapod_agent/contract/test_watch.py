@@ -79,6 +79,15 @@ def test_a_wrong_unit_outlasts_the_message_by_a_second() -> None:
     assert watched.check(slow) is None
 
 
+def test_an_acceleration_in_g_is_named_within_seconds() -> None:
+    watched = watch('imu/data')
+    for _ in range(80):
+        found = watched.check(imu(1.0))
+    assert found is not None
+    assert (found.kind, found.field) == ('wrong_unit', 'linear_acceleration')
+    assert 'looks like g' in found.found
+
+
 def test_flipped_gravity_is_named_within_half_a_second_and_a_jolt_is_not() -> None:
     watched = watch('imu/data')
     assert watched.check(imu(-30.0)) is None

@@ -1,0 +1,271 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""A walking robot whose sensors are swapped for drivers of their own, and broken one by one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import pytest
+from diagnostic_msgs.msg import DiagnosticArray
+from hexapod_agent.config import AgentConfig
+from hexapod_agent.contract.limits import Limits, parse_frames
+from hexapod_agent.contract.messages import listen_and_check
+from hexapod_agent.contract.report import SensorReport
+from hexapod_agent.observation import LETTERS, ObservationSpec
+from hexapod_agent.play_node import PlayNode
+from hexapod_agent.training import Trainer
+from hexapod_cpg.cpg_node import CpgNode
+from hexapod_node.coroutines import start
+from hexapod_sim.driver_channels import CHANNELS
+from hexapod_sim.driver_faults import fault_names
+from hexapod_sim.fake_driver_node import FakeDriverNode
+from hexapod_sim.sim_node import SimNode
+from nav_msgs.msg import Odometry
+from rclpy.parameter import Parameter
+from trajectory_msgs.msg import JointTrajectory
+
+from hexapod_agent import checkpoint, real_time
+from hexapod_sim import robot
+
+pytestmark = pytest.mark.graph
+SMALL = {'actor': {'hidden': [16, 12]}, 'critic': {'hidden': [16, 12]}}
+# A busy machine may hold up a whole process for a while: time goes slower, by the sim's clock.
+FACTOR = 0.4
+AGE_S = 0.4
+AGES = [f'{p.name}:={AGE_S}' for p in real_time.PARAMETERS if p.name.startswith('max_age')]
+
+
+@dataclass(frozen=True)
+class Device:
+    """A driver as a lab might have it: its own topic, frame, order and errors."""
+
+    topic: str
+    settings: dict[str, object]
+    frame: str = ''
+
+
+DEVICES = {
+    'joint_states': Device(
+        'servos/state',
+        {'joint_order': 'shuffled', 'joint_prefix': 'px/', 'extra_joints': 2, 'noise': 0.002,
+         'velocity_noise': 0.05, 'quantisation': 0.005},
+    ),
+    'line_offset': Device('camera/line', {'noise': 0.005, 'delay': 0.05}, 'camera'),
+    'joint_torques': Device(
+        'servos/load', {'joint_order': 'reversed', 'quantisation': 0.02, 'noise': 0.02}
+    ),
+    'body/twist': Device('flow/twist', {'noise': 0.02, 'bias': 0.01}, 'flow'),
+    'imu/data': Device('bno055/data', {'noise': 0.01, 'bias': 0.01}, 'bno055'),
+    'imu/data_raw': Device('bno055/raw', {'noise': 0.02, 'bias': 0.01}, 'bno055'),
+    'body/height': Device('tof/range', {'noise': 2e-3, 'quantisation': 1e-3, 'rate': 20.0}, 'tof'),
+    'foot_force': Device('cells/force', {'noise': 0.2, 'dropout': 0.02}, 'cell'),
+    'foot_contacts': Device('switches', {'dropout': 0.02}),
+}  # fmt: skip
+
+
+def remaps(channels: list[str]) -> dict[str, str]:
+    """Return the devices' topics by those of the sensor table."""
+    return {
+        topic: DEVICES[channel].topic + topic.removeprefix(channel)
+        for channel in channels
+        for topic in CHANNELS[channel].topics
+    }
+
+
+def frames(channels: list[str]) -> str:
+    """Return what the user says of the devices' frames."""
+    return ' '.join(
+        f'{topic}={DEVICES[channel].frame}{topic.removeprefix(channel).replace("/", "_")}'
+        for channel in channels
+        if DEVICES[channel].frame
+        for topic in CHANNELS[channel].topics
+    )
+
+
+class Robot:
+    """Sim, pattern generator, agent and drivers in real time, and what they say."""
+
+    def __init__(self, graph, swapped: list[str]) -> None:
+        self.graph = graph
+        self.limits = Limits(AGE_S, silence=1.5, frames=parse_frames(frames(swapped)))
+        self.x = 0.0
+        self.state = self.motion = self.reason = ''
+        self.targets: list[float] = []
+        self.drivers = {channel: self._driver(channel) for channel in swapped}
+        node = graph.nodes[0]
+        node.create_subscription(DiagnosticArray, '/diagnostics', self._on_diagnostics, 10)
+        node.create_subscription(Odometry, 'odom', self._on_odometry, 10)
+        node.create_subscription(JointTrajectory, 'joint_trajectory', self._on_targets, 10)
+        self.play = graph.add(PlayNode(), *self.drivers.values(), SimNode(), CpgNode())
+
+    def walks_on(self) -> None:
+        """Wait until the robot has come a step further."""
+        self.graph.until(lambda: self.state == 'driving')
+        here = self.x
+        self.graph.until(lambda: self.x > here + 0.02)
+
+    def stops(self) -> None:
+        """Wait until the robot stands in its standing pose."""
+        self.graph.until(lambda: self.state in ('holding', 'refused'))
+        standing = robot.NEUTRAL_POSE.tolist()
+        self.graph.until(lambda: self.motion == 'standing' and self.targets == standing)
+
+    def set_fault(self, channel: str, fault: str) -> None:
+        """Break a driver, or mend it."""
+        done = self.drivers[channel].set_parameters([Parameter('fault', value=fault)])
+        assert done[0].successful, done[0].reason
+
+    def check(self, seconds: float = 0.6) -> SensorReport:
+        """Check the sensors as the agent hears them."""
+        checked = listen_and_check(
+            self.graph.nodes[0], ObservationSpec(LETTERS), seconds, self.limits, discovery_s=1.0
+        )
+        return self.graph.result(start(checked))
+
+    def _driver(self, channel: str) -> FakeDriverNode:
+        device = DEVICES[channel]
+        settings = {
+            'channel': channel,
+            'topic': device.topic,
+            'frame': device.frame,
+            **device.settings,
+        }
+        parameters = [Parameter(name, value=value) for name, value in settings.items()]
+        return FakeDriverNode(f'driver_{channel.replace("/", "_")}', parameters)
+
+    def _on_diagnostics(self, message: DiagnosticArray) -> None:
+        for status in message.status:
+            values = {entry.key: entry.value for entry in status.values}
+            if status.name == '/play: state':
+                self.state, self.reason = values['state'], status.message
+            elif status.name == '/cpg: state':
+                self.motion = values['motion']
+
+    def _on_odometry(self, message: Odometry) -> None:
+        self.x = message.pose.pose.position.x
+
+    def _on_targets(self, message: JointTrajectory) -> None:
+        self.targets = list(message.points[-1].positions)
+
+
+@pytest.fixture
+def swapped(request) -> list[str]:
+    """Return the channels that come from drivers; all unless the test says how many."""
+    return list(DEVICES)[: getattr(request, 'param', None)]
+
+
+@pytest.fixture
+def ros_args(tmp_path, swapped) -> list[str]:
+    """Return arguments for real time, an untrained agent of all channels, and the swaps."""
+    trainer = Trainer(ObservationSpec(LETTERS), AgentConfig.from_mapping(SMALL, 'small'), 5)
+    checkpoint.save(tmp_path / 'agent.pt', trainer, to_resume=False)
+    given = {
+        'checkpoint': f'{tmp_path}/agent.pt',
+        'check_seconds': '0.5',
+        'max_age': '0.6',
+        'stop_rate': '3.0',
+        'real_time_factor': str(FACTOR),
+        'play:use_sim_time': 'true',
+        'cpg:use_sim_time': 'true',
+    }
+    given |= {'frames': frames(swapped)} if frames(swapped) else {}
+    words = ['sync:=realtime', *AGES, *(f'{name}:={value}' for name, value in given.items())]
+    return [
+        '--ros-args',
+        *(word for text in words for word in ('-p', text)),
+        *(
+            word
+            for ours, own in remaps(swapped).items()
+            for node in ('play', 'test')
+            for word in ('-r', f'{node}:{ours}:={own}')
+        ),
+    ]
+
+
+@pytest.fixture
+def walking(graph, swapped) -> Robot:
+    """Return a robot on its way."""
+    made = Robot(graph, swapped)
+    made.walks_on()
+    return made
+
+
+# What each fault of a driver is to the check: kind and field, by fault and by channel where
+# that decides.
+KINDS = {
+    'stopped': ('stopped', 'topic'),
+    'stale_stamps': ('stale_stamps', 'header.stamp'),
+    'nan': ('not_finite', None),
+    'wrong_length': ('wrong_length', None),
+    'wrong_names': ('wrong_names', 'name'),
+    'wrong_frame': ('wrong_frame', 'header.frame_id'),
+    'bad_quaternion': ('bad_quaternion', 'orientation'),
+    'flipped_gravity': ('flipped_gravity', 'linear_acceleration.z'),
+    'wrong_unit': ('wrong_unit', None),
+}
+FIELDS = {
+    'joint_states': 'position',
+    'line_offset': 'offset',
+    'joint_torques': 'effort',
+    'body/twist': 'twist.linear',
+    'imu/data': 'orientation',
+    'imu/data_raw': 'angular_velocity',
+    'body/height': 'range',
+    'foot_force': 'wrench.force',
+}
+
+
+def assert_named_and_stopped(walking: Robot, channel: str, fault: str) -> None:
+    """Break a driver: the check names fault and field, the robot stops, and mended walks on."""
+    kind, field = KINDS[fault]
+    field = field or FIELDS[channel]
+    if (channel, fault) == ('imu/data', 'wrong_unit'):
+        field = 'linear_acceleration'
+    walking.set_fault(channel, fault)
+    report = walking.check()
+    named = [found for found in report.faults if found.kind == kind]
+    assert named, report.refusal
+    topics = {f'/{own}' for own in remaps([channel]).values()}
+    assert {found.topic for found in report.faults} <= topics, report.refusal
+    assert any(found.field.startswith(field) for found in named), report.refusal
+    assert all(found.cure for found in named)
+    walking.stops()
+    walking.set_fault(channel, '')
+    walking.walks_on()
+    assert walking.check().passed
+
+
+def test_the_robot_walks_with_drivers_of_every_channel_and_stops_when_one_breaks(walking) -> None:
+    heard = {subscription.topic_name for subscription in walking.play.subscriptions}
+    assert {f'/{own}' for own in remaps(list(DEVICES)).values()} <= heard
+    report = walking.check()
+    assert report.passed, report.refusal
+    for channel, fault in (
+        ('foot_contacts', 'stopped'),
+        ('joint_states', 'wrong_length'),
+        ('body/height', 'nan'),
+        ('body/twist', 'wrong_frame'),
+        ('line_offset', 'stale_stamps'),
+        ('joint_torques', 'wrong_unit'),
+        ('imu/data', 'flipped_gravity'),
+    ):
+        assert_named_and_stopped(walking, channel, fault)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('channel', DEVICES)
+def test_every_fault_of_every_driver_is_named_and_stops_the_robot(walking, channel: str) -> None:
+    for fault in fault_names(channel):
+        assert_named_and_stopped(walking, channel, fault)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('swapped', range(len(DEVICES) + 1), indirect=True)
+def test_one_channel_after_another_comes_from_a_driver(walking, swapped: list[str]) -> None:
+    report = walking.check()
+    assert report.passed, report.refusal
+    topics = {row.topic for row in report.rows}
+    assert {f'/{own}' for own in remaps(swapped).values()} <= topics
+    walking.walks_on()
