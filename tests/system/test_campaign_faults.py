@@ -1,0 +1,107 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""One fault at a time: a second manager, workers that hang, disks that refuse."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from .short_campaign import FOUR_RUNS, ShortCampaign
+from .storm import children
+
+pytestmark = pytest.mark.system
+WORKER = 'ros2 run hexapod_bringup worker_node --ros-args -r __ns:=/far'
+
+
+@pytest.fixture
+def campaign(shell) -> ShortCampaign:
+    return ShortCampaign(shell, shell.directory / 'campaign', FOUR_RUNS, 8)
+
+
+def results_of(campaign: ShortCampaign, worker: str) -> bool:
+    """Whether an unfinished bag holds something that a worker has published."""
+    return any(
+        f'/{worker}/episode_result'.encode() in file.read_bytes()
+        for file in campaign.runs.glob('*.partial/*.mcap')
+    )
+
+
+def test_a_second_manager_is_one_clear_error(shell, campaign: ShortCampaign) -> None:
+    first = campaign.start(workers=0)
+    shell.until(lambda: (campaign.plan.parent / 'campaign.lock').exists())
+    second = campaign.start(workers=1)
+    assert second.wait(30.0) == 1
+    output = (shell.directory / 'output_1').read_text().strip().splitlines()
+    assert len(output) == 1
+    assert f'campaign {campaign.plan.parent}: process {first.pid} on ' in output[0]
+    assert first.poll() is None
+    first.kill()
+    first.wait()
+    assert campaign.start(workers=2).wait(100.0) == 0, shell.output()
+
+
+def test_a_local_worker_that_hangs_is_replaced(shell, campaign: ShortCampaign) -> None:
+    manager = campaign.start(workers=1, stall_timeout=3.0)
+    shell.until(lambda: results_of(campaign, 'worker_1'))
+    (worker,) = children(manager.pid)
+    os.kill(worker, signal.SIGSTOP)
+    assert manager.wait(100.0) == 0, shell.output()
+    assert 'is due again, /worker_1: no sign of life for 3 s' in shell.output()
+    campaign.assert_as_alone()
+
+
+def test_a_far_worker_that_hangs_gives_its_row_away_and_comes_back(
+    shell, campaign: ShortCampaign
+) -> None:
+    far = shell.start(WORKER)
+    manager = campaign.start(workers=0, stall_timeout=3.0)
+    shell.until(lambda: results_of(campaign, 'far'))
+    far.send_signal(signal.SIGSTOP)
+    near = shell.start(WORKER.replace('far', 'near'))
+    shell.until(lambda: results_of(campaign, 'near'), timeout_s=60.0)
+    far.send_signal(signal.SIGCONT)
+    assert manager.wait(100.0) == 0, shell.output()
+    assert 'is due again, /far: no sign of life for 3 s' in shell.output()
+    assert far.poll() is None
+    assert near.poll() is None
+    campaign.assert_as_alone()
+
+
+@pytest.fixture
+def small_disk(tmp_path: Path):
+    """Mount a file system of two megabytes and return its folder."""
+    folder = tmp_path / 'disk'
+    folder.mkdir()
+    if os.geteuid() != 0 or not mount('-t', 'tmpfs', '-o', 'size=2m', 'none', str(folder)):
+        pytest.skip('this machine does not let tests mount a file system')
+    yield folder
+    subprocess.run(['umount', '-l', str(folder)], check=True)
+
+
+def mount(*options: str) -> bool:
+    return subprocess.run(['mount', *options], capture_output=True, check=False).returncode == 0
+
+
+def test_a_full_disk_ends_the_campaign_and_loses_nothing(shell, small_disk: Path) -> None:
+    campaign = ShortCampaign(shell, small_disk, FOUR_RUNS, 8)
+    (small_disk / 'thesis.pdf').write_bytes(bytes(1_600_000))
+    assert campaign.start(workers=1).wait(100.0) == 1, shell.output()
+    complaint = f'campaign {small_disk}: cannot write: No space left on device; what is done stays'
+    assert complaint in shell.output()
+    assert mount('-o', 'remount,size=16m', str(small_disk))
+    assert campaign.start(workers=1).wait(100.0) == 0, shell.output()
+    campaign.assert_as_alone()
+
+
+def test_a_read_only_folder_is_one_clear_error(shell, small_disk: Path) -> None:
+    campaign = ShortCampaign(shell, small_disk, FOUR_RUNS, 8)
+    assert mount('-o', 'remount,ro', str(small_disk))
+    assert campaign.start(workers=1).wait(30.0) == 1
+    (line,) = shell.output().strip().splitlines()
+    assert f'campaign {small_disk}: cannot write: Read-only file system' in line
