@@ -20,6 +20,7 @@ PYTHON = [name for name in PACKAGES if (SOURCES / name / 'setup.py').is_file()]
 # rosdep's keys of the libraries; '' where it has none, and requirements.txt alone names it.
 ROSDEP_KEYS = {
     'PIL': 'python3-pil',
+    'annotated_types': '',
     'gymnasium': 'python3-gymnasium-pip',
     'jinja2': 'python3-jinja2',
     'matplotlib': 'python3-matplotlib',
@@ -85,7 +86,8 @@ def test_libraries_without_a_key_are_required_by_pip() -> None:
     text = (ROOT / 'requirements.txt').read_text().lower()
     required = {re.split(r'[=<>\s]', line)[0] for line in text.splitlines() if line[:1].isalpha()}
     used = set().union(*map(imported, PYTHON))
-    assert {name.lower() for name in used if ROSDEP_KEYS.get(name) == ''} <= required
+    bare = {name for name in used if ROSDEP_KEYS.get(name) == ''}
+    assert {name.lower().replace('_', '-') for name in bare} <= required
     assert sorted(name for name, key in ROSDEP_KEYS.items() if not key and name not in used) == []
 
 

@@ -19,8 +19,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from types import MappingProxyType
+from typing import Annotated
 
 import numpy as np
+from annotated_types import Interval
 
 from hexapod_sim import robot
 
@@ -52,23 +54,29 @@ GAITS = MappingProxyType(
 )
 
 
+# Far from where RK4 at 5 ms loses the limit cycle: 2 alpha mu times the step stays below 2.8.
+_Rate = Annotated[float, Interval(ge=0.0, le=100.0)]
+_Steepness = Annotated[float, Interval(ge=0.0, le=1e3)]
+_Phase = Annotated[float, Interval(ge=-10.0, le=10.0)]
+
+
 @dataclass(frozen=True)
 class HopfConfig:
     """Constants of the oscillator network."""
 
-    alpha: float = 20.0
+    alpha: _Rate = 20.0
     """Convergence rate of x towards the limit cycle [1/s per squared radius]."""
-    beta: float = 20.0
+    beta: _Rate = 20.0
     """Convergence rate of y towards the limit cycle [1/s per squared radius]."""
-    coupling: float = 0.5
+    coupling: _Rate = 0.5
     """Strength delta of the coupling between legs [1/s]."""
     gait: str = 'tripod'
     """Gait: tripod, tetrapod or wave."""
     swing_stance: bool = False
     """Let swing (y < 0) and stance take the gait's shares of the cycle, instead of half each."""
-    sigmoid_gain: float = 50.0
+    sigmoid_gain: _Steepness = 50.0
     """Steepness a of the change between swing and stance frequency."""
-    start_phase: float = np.pi / 2
+    start_phase: _Phase = np.pi / 2
     """Common phase at the start [rad]. A quarter cycle starts every hip at mid-stroke, so that
     the first half-stance does not turn the robot."""
 

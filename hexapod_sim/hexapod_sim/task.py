@@ -5,8 +5,10 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
+from annotated_types import Interval
 
 from hexapod_sim import robot
 from hexapod_sim.simulation import Simulation, SimulationDivergedError
@@ -15,6 +17,17 @@ _PERIOD_S = robot.CONTROL_PERIOD_NS * 1e-9
 TERM_NAMES = ('velocity', 'closeness', 'orientation', 'height', 'alive')
 DIVERGED = 'diverged'
 """Cause of an episode's end that no pose shows: the physics was lost."""
+
+# What the parameters may be, least and greatest; nothing divides by zero.
+_Steps = Annotated[int, Interval(ge=1, le=1_000_000)]
+_Place = Annotated[float, Interval(ge=-1e3, le=1e3)]
+_Distance = Annotated[float, Interval(ge=0.0, le=1e6)]
+_Duration = Annotated[float, Interval(ge=0.0, le=1e6)]
+_Weight = Annotated[float, Interval(ge=0.0, le=1e3)]
+_Reward = Annotated[float, Interval(ge=-1e3, le=1e3)]
+_Scale = Annotated[float, Interval(ge=1e-3, le=1e3)]
+_Share = Annotated[float, Interval(ge=0.0, le=1.0)]
+_Angle = Annotated[float, Interval(ge=0.0, le=10.0)]
 
 
 @dataclass(frozen=True)
@@ -26,44 +39,44 @@ class TaskConfig:
     closeness are at least zero and the two penalties take at most the constant.
     """
 
-    time_limit_steps: int = 600
+    time_limit_steps: _Steps = 600
     """Control periods of a full episode (15 s)."""
-    start_offset: float = 0.5
+    start_offset: _Distance = 0.5
     """Largest distance from the line at the start [m]; drawn uniformly to either side."""
-    line_y: float = 0.0
+    line_y: _Place = 0.0
     """Where the goal line runs along odom's x axis, or the middle of where it jumps [m]."""
-    line_jump: float = 0.0
+    line_jump: _Place = 0.0
     """Distance of a jumping line from line_y [m]; it begins on the right."""
-    line_period: float = 0.0
+    line_period: _Duration = 0.0
     """Time between two jumps [s]; 0 keeps the line at line_y."""
 
-    velocity_weight: float = 1.0
+    velocity_weight: _Weight = 1.0
     """Reward per unit of the velocity term."""
-    closeness_weight: float = 1.0
+    closeness_weight: _Weight = 1.0
     """Reward per unit of the closeness term."""
-    orientation_weight: float = 0.5
+    orientation_weight: _Weight = 0.5
     """Cost per unit of the orientation penalty."""
-    height_weight: float = 0.5
+    height_weight: _Weight = 0.5
     """Cost per unit of the height penalty."""
-    alive_reward: float = 2.0
+    alive_reward: _Reward = 2.0
     """Constant earned in every step."""
 
-    velocity_scale: float = 0.3
+    velocity_scale: _Scale = 0.3
     """Speed along the line that earns one [m/s]."""
-    orientation_scale: float = 0.35
+    orientation_scale: _Scale = 0.35
     """Angle from upright, or from the line's direction, that costs one [rad]."""
-    yaw_share: float = 1.0
+    yaw_share: _Share = 1.0
     """How much of the squared yaw enters the orientation penalty: 1 as roll and pitch, 0 none."""
-    walking_height: float = 0.1335
+    walking_height: _Scale = 0.1335
     """Mean height of base_link in the constant gait, measured [m]."""
-    height_scale: float = 0.3
+    height_scale: _Scale = 0.3
     """Share of the walking height whose error costs one."""
 
-    max_tilt: float = 1.0
+    max_tilt: _Angle = 1.0
     """Roll or pitch beyond which the robot counts as flipped [rad]."""
-    min_height: float = 0.05
+    min_height: _Place = 0.05
     """Height of base_link under which the robot counts as collapsed [m]."""
-    max_offset: float = 2.0
+    max_offset: _Distance = 2.0
     """Distance from the line beyond which the robot counts as strayed [m]."""
 
     def __post_init__(self) -> None:

@@ -5,9 +5,11 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Annotated
 
 import pytest
 import rclpy
+from annotated_types import Interval
 from hexapod_node.parameters import ConfigParameters, Parameter, config_table, declare, descriptor
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
 from rclpy.node import Node
@@ -18,7 +20,7 @@ from rclpy.parameter import Parameter as RclpyParameter
 class Config:
     """A configuration."""
 
-    speed: float = 0.5
+    speed: Annotated[float, Interval(ge=0.0, le=2.0)] = 0.5
     """Walking speed [m/s]."""
     legs: int = 6
     """How many
@@ -36,6 +38,8 @@ def test_scalar_fields_become_parameters_with_their_docs_and_units() -> None:
         'Walking speed',
         'm/s',
     )
+    assert speed.range == (0.0, 2.0)
+    assert legs.range is None
     assert (legs.name, legs.default, legs.description) == ('walk.legs', 6, 'How many there are')
     assert (gait.name, gait.default, gait.description) == ('walk.gait', 'tripod', '')
 
@@ -128,3 +132,6 @@ def test_a_configuration_takes_whole_numbers(started) -> None:
     config = ConfigParameters(node, Config, 'walk')
     assert set_one(node, 'walk.speed', 2) == (True, '')
     assert config.get().speed == 2.0
+    done, reason = set_one(node, 'walk.speed', 2.5)
+    assert not done
+    assert 'out of range' in reason

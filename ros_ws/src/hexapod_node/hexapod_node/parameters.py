@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 from functools import partial
 from itertools import pairwise
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, TypeVar, get_type_hints
 from weakref import WeakSet
 
 from rcl_interfaces.msg import (
@@ -155,16 +155,30 @@ class ConfigParameters(Generic[Config]):
 def config_table(config: type, prefix: str) -> tuple[Parameter, ...]:
     """Return the parameters that a configuration's scalar fields make.
 
-    A field's docstring is the description; where it ends in brackets, they hold the unit.
+    A field's docstring is the description; where it ends in brackets, they hold the unit. An
+    `Interval` in its annotation is the range.
     """
     docs = _field_docs(config)
+    hints = get_type_hints(config, include_extras=True)
     table = []
     for field in fields(config):
         if isinstance(field.default, Value):
             text, unit = _split_unit(docs.get(field.name, ''))
             name = f'{prefix}.{field.name}'
-            table.append(Parameter(name, field.default, text, unit=unit, read_only=False))
+            limits = _limits(hints[field.name])
+            table.append(Parameter(name, field.default, text, unit, limits, read_only=False))
     return tuple(table)
+
+
+def _limits(hint: Any) -> tuple[float, float] | None:
+    """Return least and greatest value of an annotation; None if it has no interval.
+
+    The interval is any object with `ge` and `le`, as annotated_types and pydantic know it.
+    """
+    for mark in getattr(hint, '__metadata__', ()):
+        if hasattr(mark, 'ge') and hasattr(mark, 'le'):
+            return mark.ge, mark.le
+    return None
 
 
 def _field_docs(config: type) -> dict[str, str]:
