@@ -32,12 +32,15 @@ from hexapod_doe.manager_node import ManagerNode
 from hexapod_doe.player_node import PlayerNode
 from hexapod_doe.recorder_node import RecorderNode
 from hexapod_node.sync import LOCKSTEP, REALTIME
+from hexapod_sim.fake_driver_node import FakeDriverNode
 from hexapod_sim.sim_node import SimNode
+from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.action import get_action_server_names_and_types_by_node
 from rclpy.lifecycle import LifecycleNode
 from rclpy.node import Node
 
 from hexapod_agent import checkpoint
+from hexapod_bringup.description_node import DescriptionNode
 
 SAMPLE_BAG = 'bags/sample'
 _NODES = {
@@ -48,12 +51,18 @@ _NODES = {
     'recorder': (RecorderNode, 'hexapod_doe recorder_node'),
     'player': (PlayerNode, 'hexapod_doe player_node'),
     'manager': (ManagerNode, 'hexapod_doe manager_node'),
+    'fake_driver': (FakeDriverNode, 'hexapod_sim fake_driver'),
+    'description': (DescriptionNode, 'hexapod_bringup description_node'),
 }
 # Parameters that the nodes were given here, and their defaults.
 _GIVEN = {
-    p.name: str(p.default) for p in MANAGER_PARAMETERS if p.name in ('plan', 'local_workers')
+    'manager': {
+        p.name: str(p.default) for p in MANAGER_PARAMETERS if p.name in ('plan', 'local_workers')
+    },
+    'play': {'bag': '', 'checkpoint': '', 'sync': LOCKSTEP},
+    'player': {'bag': ''},
 }
-_GIVEN |= {'bag': '', 'checkpoint': '', 'sync': LOCKSTEP}
+_GREATEST_INTEGER = 2**63 - 1
 # What every rclpy node has is not worth a row.
 _COMMON_TOPICS = ('/rosout', '/parameter_events', '/diagnostics')
 _COMMON_SERVICES = re.compile(r'/((describe|get|list|set)_parameter\w*|get_type_description)$')
@@ -129,7 +138,7 @@ def _node_table(node: Node, played: set[str]) -> str:
     parameters = list(_parameters(node))
     if not parameters:
         return interface
-    head = ('parameter', 'default', 'unit', 'meaning')
+    head = ('parameter', 'default', 'unit', 'range', 'meaning')
     return f'{interface}\n\n{_markdown(head, parameters)}'
 
 
@@ -156,9 +165,24 @@ def _parameters(node: Node) -> Iterator[tuple[str, ...]]:
         if name in ('use_sim_time', 'start_type_description_service'):
             continue
         described = node.describe_parameter(name)
-        unit = described.additional_constraints.removeprefix('unit: ')
-        default = _GIVEN.get(name, str(node.get_parameter(name).value))
-        yield f'`{name}`', f'`{default}`' if default else '', unit, described.description
+        constraints = described.additional_constraints
+        words = dict(part.split(': ', 1) for part in constraints.split('; ') if part)
+        given = _GIVEN.get(node.get_name(), {})
+        default = given.get(name, str(node.get_parameter(name).value))
+        yield (
+            f'`{name}`',
+            f'`{default}`' if default else '',
+            words.get('unit', ''),
+            words.get('one of') or _range(described),
+            described.description,
+        )
+
+
+def _range(described: ParameterDescriptor) -> str:
+    for limits in (*described.floating_point_range, *described.integer_range):
+        low, high = limits.from_value, limits.to_value
+        return f'{low:.15g} or more' if high == _GREATEST_INTEGER else f'{low:.15g} to {high:.15g}'
+    return ''
 
 
 def _code(name: str) -> str:
