@@ -73,6 +73,7 @@ def _check_topic(subject: Subject, clocks: list[Clock]) -> tuple[list[Finding], 
     found += presence.check_messages(subject)
     stamps = list(timing.check_stamps(subject))
     found += stamps or timing.check_lag(subject, clocks)
+    found += timing.check_pauses(subject, clocks)
     found += timing.check_rate(subject)
     found += shape.check_frame(subject)
     unreadable = list(shape.check_shape(subject)) or list(shape.check_finite(subject))

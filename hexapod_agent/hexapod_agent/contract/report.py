@@ -11,7 +11,7 @@ from typing import Any
 
 from hexapod_agent.contract.finding import Finding
 from hexapod_agent.contract.subject import Subject
-from hexapod_agent.contract.timing import Clock, gaps_s, median_lag_s
+from hexapod_agent.contract.timing import Clock, clock_of, gaps_s, median_lag_s
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class TopicRow:
     messages: int
     """How many were heard."""
     rate: float | None
-    """Mean [Hz]; None with fewer than two messages."""
+    """Mean, pauses and all [Hz]; None with fewer than two messages."""
     lag: float | None
     """Median of how far its stamps lie behind the other channels' [s]."""
     frame: str
@@ -73,7 +73,7 @@ class SensorReport:
 def topic_row(subject: Subject, clocks: list[Clock], findings: Sequence[Finding]) -> TopicRow:
     """Return the row of a topic."""
     heard, samples = subject.heard, subject.samples
-    gaps = gaps_s(samples)
+    gaps = gaps_s(clock_of(samples))
     levels = {finding.level for finding in findings}
     return TopicRow(
         letter=subject.channel.letter,

@@ -66,9 +66,27 @@ def check_lag(subject: Subject, clocks: list[Clock]) -> Iterator[Finding]:
     )
 
 
+def check_pauses(subject: Subject, clocks: list[Clock]) -> Iterator[Finding]:
+    """Check that the topic does not pause while the other channels go on."""
+    longest = subject.limits.silence
+    pauses = gaps_s(clock_of(subject.samples))
+    pauses = pauses[pauses > longest]
+    # A robot that rests, or a bag of some episodes of many, pauses on all channels.
+    usual = np.median([(gaps_s(clock) > longest).sum() for clock in clocks])
+    if len(pauses) > usual:
+        yield subject.finding(
+            'pauses',
+            'rate',
+            f'has {len(pauses)} pauses of up to {pauses.max():.2f} s',
+            f'a message at least every {longest:g} s',
+            'see whether the device or its bus resets, or its driver blocks',
+        )
+
+
 def check_rate(subject: Subject) -> Iterator[Finding]:
-    """Check the time between samples against the control period."""
-    gaps = gaps_s(subject.samples)
+    """Check the time between samples against the control period, pauses apart."""
+    gaps = gaps_s(clock_of(subject.samples))
+    gaps = gaps[gaps <= max(subject.limits.silence, np.median(gaps))] if len(gaps) else gaps
     if not len(gaps):
         return
     rate, usual = 1.0 / gaps.mean(), float(np.median(gaps))
@@ -103,12 +121,12 @@ def clock_of(samples: tuple[Sample, ...]) -> Clock:
     return arrivals, stamps_of(samples)
 
 
-def gaps_s(samples: tuple[Sample, ...]) -> NDArray[np.float64]:
+def gaps_s(clock: Clock) -> NDArray[np.float64]:
     """Return the times between samples [s], by stamp, or by arrival where stamps are no clock.
 
     Stamps tell the rate of a driver also in simulated time and on a machine under load.
     """
-    arrivals, stamps = clock_of(samples)
+    arrivals, stamps = clock
     steps = np.diff(stamps)
     return (steps if (steps > 0).all() else np.diff(arrivals)) * 1e-9
 

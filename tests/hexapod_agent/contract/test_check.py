@@ -123,6 +123,17 @@ def test_a_slow_driver_is_a_warning_and_a_very_slow_one_a_fault(robot) -> None:
     assert robot.report(Limits(ages={'body/height': 0.3})).passed
 
 
+def test_a_driver_that_pauses_alone_is_named(robot) -> None:
+    robot.change('imu/data', lambda had: replace(had, samples=had.samples[:20] + had.samples[50:]))
+    named(robot.fault(), 'pauses', 'rate', 'has 1 pauses of up to 0.78 s', 'bus resets')
+
+
+def test_a_pause_of_all_channels_is_none_of_a_driver(robot) -> None:
+    for topic in robot.evidence.topics:
+        robot.change(topic, lambda had: replace(had, samples=had.samples[:20] + had.samples[50:]))
+    assert robot.report().findings == ()
+
+
 def test_a_wrong_frame_is_named_unless_the_user_says_it_is_equal(robot) -> None:
     robot.each('imu/data', lambda sample: replace(sample, frame='bno055'))
     named(robot.fault(), 'wrong_frame', 'header.frame_id', "'bno055'", "'imu_link'")
