@@ -20,6 +20,7 @@ def make(
     batch: int = BATCH,
     rate: float = 1e-2,
     value: float = 0.0,
+    observations: int = SIZES[0],
     **actor,
 ) -> Ddpg:
     values = {
@@ -27,7 +28,8 @@ def make(
         'preactivation_penalty': 0.0, 'normalize_loss': False,
     }  # fmt: skip
     return Ddpg(
-        *SIZES,
+        observations,
+        SIZES[1],
         ActorConfig(**values | actor),
         CriticConfig((20, 10), 'add', value, rate, 0.0, 1e9),
         batch,
@@ -142,6 +144,39 @@ def test_a_stack_learns_what_single_agents_learn():
         stack.update()
         single.update()
     torch.testing.assert_close(stack.actor_parameters.flat[:1], single.actor_parameters.flat)
+
+
+def test_only_the_agents_that_learn_are_moved():
+    stack = make(agents=3)
+    fill(stack)
+    before = {name: part.clone() for name, part in stacks_of(stack).items()}
+    stack.learn_only([0, 2])
+    stack.update()
+    for name, part in stacks_of(stack).items():
+        moved = [not torch.equal(part[agent], before[name][agent]) for agent in range(3)]
+        assert moved == [True, False, True], name
+
+
+def test_an_agent_put_in_a_wider_stack_learns_as_alone():
+    single, stack = make(), make(agents=2, observations=SIZES[0] + 4)
+    fill(single)
+    stack.put(1, single)
+    for ours, theirs in zip(vars(stack.batch).values(), vars(single.batch).values(), strict=True):
+        ours.zero_()
+        ours[1, :, : theirs.shape[-1]] = theirs[0]
+    for _ in range(3):
+        stack.update()
+        single.update()
+    taken = make(seed=1)
+    stack.take(1, taken)
+    for name, part in stacks_of(single).items():
+        torch.testing.assert_close(stacks_of(taken)[name], part)
+
+
+def stacks_of(agent: Ddpg) -> dict[str, torch.Tensor]:
+    """Networks and targets of a state."""
+    state = agent.state_dict()
+    return {name: state[name] for name in ('actor', 'critic', 'target_actor', 'target_critic')}
 
 
 def test_preactivation_penalty_keeps_actions_off_the_bounds():

@@ -64,3 +64,44 @@ def test_state_carries_moments_and_step_count():
     run(5, optimizer)
     run(5, twin)
     assert torch.equal(parameters.flat, twin_parameters.flat)
+
+
+def test_agents_at_different_steps_move_as_they_do_alone():
+    shapes = {'a.weight': (2, 3), 'a.bias': (2,)}
+
+    def gradient(step: int) -> float:
+        return 0.1 * step - 0.25
+
+    alone = ParameterStack(shapes)
+    optimizer = ClippedAdam(alone, 0.1, 0.1, 1.0)
+    both = ParameterStack(shapes, agents=2)
+    stack = ClippedAdam(both, 0.1, 0.1, 1.0)
+    # The second agent begins when the first has taken three steps.
+    stack.move_only([0])
+    for step in range(3):
+        stack.gradients.flat.fill_(gradient(step))
+        stack.step()
+    assert not both.flat[1].any()
+    stack.move_only([0, 1])
+    for step in range(4):
+        optimizer.gradients.flat.fill_(gradient(step))
+        optimizer.step()
+        stack.gradients.flat[0].fill_(gradient(step + 3))
+        stack.gradients.flat[1].fill_(gradient(step))
+        stack.step()
+    torch.testing.assert_close(both.flat[1:], alone.flat)
+    assert stack.state_dict()['steps'].tolist() == [7, 4]
+
+
+def test_state_moves_between_a_stack_and_a_single_agent():
+    shapes = {'a.bias': (4,)}
+    single = ClippedAdam(ParameterStack(shapes), 0.1, 0.0, 1.0)
+    single.gradients.arrays['a.bias'].fill_(0.3)
+    single.step()
+    stack = ClippedAdam(ParameterStack(shapes, agents=3), 0.1, 0.0, 1.0)
+    stack.put(2, single)
+    assert stack.state_dict()['steps'].tolist() == [0, 0, 1]
+    copy = ClippedAdam(ParameterStack(shapes), 0.1, 0.0, 1.0)
+    stack.take(2, copy)
+    for name, value in single.state_dict().items():
+        assert torch.equal(copy.state_dict()[name], value)

@@ -41,3 +41,17 @@ def test_views_for_layers_lose_the_agents_of_a_stack_of_one():
     assert ParameterStack(SHAPES, 1).bias('a.bias').shape == (3,)
     assert ParameterStack(SHAPES, 2).weight('a.weight').shape == (2, 3, 5)
     assert ParameterStack(SHAPES, 2).bias('a.bias').shape == (2, 1, 3)
+
+
+def test_an_agent_that_is_put_in_is_padded_with_zeros_and_taken_out_whole():
+    stack = ParameterStack(SHAPES, agents=2)
+    stack.flat.fill_(9.0)
+    single = ParameterStack(SHAPES | {'a.weight': (3, 4)})  # one input less
+    single.draw(dict.fromkeys(SHAPES, 1.0), torch.Generator().manual_seed(0))
+    stack.put(1, single)
+    assert torch.equal(stack.arrays['a.weight'][1, :, :4], single.arrays['a.weight'][0])
+    assert not stack.arrays['a.weight'][1, :, 4].any()
+    assert stack.flat[0].eq(9.0).all()
+    taken = single.like()
+    stack.take(1, taken)
+    assert torch.equal(taken.flat, single.flat)
