@@ -43,8 +43,16 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog='shadow', description=__doc__)
     parser.add_argument('bag', type=Path, help='directory of a bag with all topics of an episode')
-    parser.add_argument('--checkpoint', required=True, help='agent to show it to: a file of train')
+    parser.add_argument(
+        '--checkpoint', required=True, type=Path, help='agent to show it to: a file of train'
+    )
     parser.add_argument('--episode', type=int, help='number of one episode; default: all recorded')
+    parser.add_argument(
+        '--graph',
+        action='store_true',
+        help='show it to the agent node, through its topics, started here in a namespace of its '
+        'own; an agent that differs goes on from its own actions there',
+    )
     parser.add_argument(
         '--json', type=Path, metavar='FILE', help='write the figures to a file as well'
     )
@@ -52,6 +60,11 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _compare(options: argparse.Namespace) -> list[Comparison]:
+    if options.graph:
+        # Only here: without --graph, comparing needs no nodes.
+        from hexapod_doe.shadow_node import shadow_on_graph
+
+        return shadow_on_graph(options.bag, options.checkpoint, options.episode)
     bag, trainer = BagFile(options.bag), load(options.checkpoint)
     policy = trained_policy(trainer.agent)
     recorded = Recorded(bag, trainer.spec)

@@ -6,6 +6,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -77,6 +79,20 @@ def test_the_agent_that_played_and_another(bag: Path, tmp_path, capsys) -> None:
     sizes = [abs(row[which]['shadow'] - row[which]['recorded']) for which in ('first', 'largest')]
     assert 0.0 < sizes[0] <= sizes[1]
     assert 'instead of' in capsys.readouterr().out
+
+
+@pytest.mark.system
+def test_the_live_agent_node_repeats_the_bag_too(bag: Path, tmp_path) -> None:
+    out = tmp_path / 'live.json'
+    command = [sys.executable, '-m', 'hexapod_doe.shadow', bag, '--graph', '--json', out]
+    command += ['--checkpoint', tmp_path / 'agent.pt']
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+    rows = json.loads(out.read_text())
+    assert [(row['episode'], row['periods'], row['equal']) for row in rows] == [
+        (0, STEPS, STEPS),
+        (1, STEPS, STEPS),
+    ]
 
 
 def test_one_other_action_is_found_and_the_rest_stays_equal(bag: Path, tmp_path) -> None:

@@ -10,7 +10,7 @@ stamp, as in real time, the newest one before it counts.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,6 +34,8 @@ from hexapod_doe.replays.episodes import Series, Span
 COMMAND = 'cpg/command'
 Action = NDArray[np.float32]
 Values = NDArray[np.float64]
+Answer = tuple[int, Values, Values]
+"""Stamp of a command in ns, its recorded fields, and those of the agent."""
 
 
 @dataclass(frozen=True)
@@ -139,48 +141,56 @@ def shadow(recorded: Recorded, span: Span, policy: Policy, cpg: CpgConfig) -> Co
         BagError: something observed is missing.
     """
     stamps = recorded.commands.within(span)
-    equal = 0
+    aged = sum(recorded.aged(stamp) for stamp in stamps)
+    return compare(span.episode, _answers(recorded, stamps, policy, cpg), aged)
+
+
+def compare(episode: int, answers: Iterable[Answer], aged: int = 0) -> Comparison:
+    """Compare recorded commands of an episode with those of an agent.
+
+    Args:
+        episode: number in its run.
+        answers: a stamp with both commands, for each period in turn.
+        aged: periods in which a topic had no sample of the command's stamp.
+    """
+    periods = equal = 0
     first: Difference | None = None
     largest: Difference | None = None
-    for differences in _differences(recorded, stamps, policy, cpg):
-        equal += not differences
-        first = first or next(iter(differences), None)
-        largest = max([*([largest] if largest else []), *differences], key=_size, default=None)
-    aged = sum(recorded.aged(stamp) for stamp in stamps)
-    return Comparison(span.episode, len(stamps), equal, aged, first, largest)
+    for periods, answer in enumerate(answers, start=1):
+        found = list(_differences(periods - 1, *answer))
+        equal += not found
+        first = first or next(iter(found), None)
+        largest = max([*([largest] if largest else []), *found], key=_size, default=None)
+    return Comparison(episode, periods, equal, aged, first, largest)
+
+
+def command_values(command: object) -> Values:
+    """Return the fields of a command or of its message. Shape: (fields, 6)."""
+    return np.array([getattr(command, field) for field in COMMAND_FIELDS], dtype=np.float64)
+
+
+def _answers(
+    recorded: Recorded, stamps: list[int], policy: Policy, cpg: CpgConfig
+) -> Iterator[Answer]:
+    previous = np.zeros(ACTION_SIZE, dtype=np.float32)
+    for stamp in stamps:
+        action = policy(recorded.observation(stamp, previous))
+        told = command_values(recorded.commands.at(stamp))
+        own = command_values(command_from_action(action, cpg.reading, cpg.ranges))
+        yield stamp, told, own
+        # What the robot was told is its previous action, whoever chose it.
+        previous = action if own.tobytes() == told.tobytes() else _action(told, cpg)
+
+
+def _differences(period: int, stamp: int, told: Values, own: Values) -> Iterator[Difference]:
+    # Bits, so that the two zeros differ and equal means equal.
+    for field, leg in np.argwhere(own.view(np.int64) != told.view(np.int64)):
+        name = f'{COMMAND_FIELDS[field]} of {LEGS[leg]}'
+        yield Difference(period, stamp, name, float(told[field, leg]), float(own[field, leg]))
 
 
 def _size(difference: Difference) -> float:
     return difference.size
-
-
-def _differences(
-    recorded: Recorded, stamps: list[int], policy: Policy, cpg: CpgConfig
-) -> Iterator[list[Difference]]:
-    previous = np.zeros(ACTION_SIZE, dtype=np.float32)
-    for period, stamp in enumerate(stamps):
-        action = policy(recorded.observation(stamp, previous))
-        told = _values(recorded.commands.at(stamp))
-        own = _values(command_from_action(action, cpg.reading, cpg.ranges))
-        # Bits, so that the two zeros differ and equal means equal.
-        unequal = np.argwhere(own.view(np.int64) != told.view(np.int64))
-        yield [
-            Difference(
-                period,
-                stamp,
-                f'{COMMAND_FIELDS[field]} of {LEGS[leg]}',
-                float(told[field, leg]),
-                float(own[field, leg]),
-            )
-            for field, leg in unequal
-        ]
-        # What the robot was told is its previous action, whoever chose it.
-        previous = action if not unequal.size else _action(told, cpg)
-
-
-def _values(command: object) -> Values:
-    """Return the fields of a command or of its message. Shape: (fields, 6)."""
-    return np.array([getattr(command, field) for field in COMMAND_FIELDS], dtype=np.float64)
 
 
 def _action(values: Values, cpg: CpgConfig) -> Action:
