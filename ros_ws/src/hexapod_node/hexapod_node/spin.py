@@ -13,6 +13,7 @@ import rclpy
 from rclpy.exceptions import ParameterException
 from rclpy.executors import ExternalShutdownException
 from rclpy.experimental.events_executor import EventsExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
@@ -44,6 +45,9 @@ def run(make: Callable[[], Node | Sequence[Node]], args: Sequence[str] | None = 
         status = spin(nodes)
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
+    except rclpy_implementation.RCLError:
+        if rclpy.ok():  # else the signal came amid a callback, which could not publish any more
+            raise
     except (ValueError, OSError, ParameterException) as error:
         if nodes:  # not a matter of starting: show where it came from
             raise
