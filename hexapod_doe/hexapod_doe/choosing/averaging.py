@@ -21,7 +21,8 @@ from hexapod_doe.choosing.draws import interval_of
 from hexapod_doe.choosing.prediction import rank_descending
 from hexapod_doe.designs.terms import CONSTANT, order, terms_up_to
 from hexapod_doe.fitting.blocks import no_blocks, without_blocks
-from hexapod_doe.fitting.model import corners, labels, model_matrix, parents
+from hexapod_doe.fitting.model import corners, estimable_terms, labels, model_matrix, parents
+from hexapod_doe.fitting.regression import ols
 
 P_MAIN = 0.5
 P_INTERACTION = (0.01, 0.10, 0.25)
@@ -121,7 +122,25 @@ def average(
         if sweep >= BURN_IN:
             visited[active.tobytes()] += 1
             draws.append(_draw(space, active, points, rng))
-    return _summarise(space, visited, spread(np.array(draws)), labels(grid), level)
+    eta = np.array(draws) + _block_error(levels, response, blocks, len(draws), rng)
+    return _summarise(space, visited, spread(eta), labels(grid), level)
+
+
+def _block_error(
+    levels: pd.DataFrame,
+    response: np.ndarray,
+    blocks: np.ndarray | None,
+    draws: int,
+    rng: np.random.Generator,
+) -> np.ndarray:
+    """Draw the error of the mean over blocks, which every set shares (draws, 1)."""
+    if blocks is None or not blocks.shape[1]:
+        return np.zeros((draws, 1))
+    mains = ols(levels, response, estimable_terms(levels, 1, blocks), blocks)
+    test = mains.blocks
+    if test is None or mains.s is None:
+        return np.zeros((draws, 1))
+    return np.sqrt(test.variance(mains.s**2) / test.count) * rng.standard_normal((draws, 1))
 
 
 def _gibbs_sweep(space: ModelSpace, active: np.ndarray, rng: np.random.Generator) -> None:

@@ -6,6 +6,7 @@
 import numpy as np
 
 from hexapod_doe.choosing.prediction import back
+from hexapod_doe.designs.terms import CONSTANT
 from hexapod_doe.fitting.regression import Fit
 from hexapod_doe.fitting.transform import Transform
 
@@ -20,13 +21,22 @@ def draw_count(combinations: int) -> int:
 def coefficient_draws(
     fit: Fit, draws: int, rng: np.random.Generator
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Draw coefficients (draws, p) and residual deviations (draws,) of a least-squares fit.
+    """Draw coefficients (draws, p) and deviations of a new run (draws,) of a least-squares fit.
 
-    s·√(df/χ²) scales both, so that a coefficient's draws follow its t distribution.
+    s·√(df/χ²) scales both, so that a coefficient's draws follow its t distribution. With blocks
+    the constant moves by the error of their mean, and a new run is of a new block; the variance
+    between blocks is drawn as (MS_block·df/χ² − s²)/runs (Weerahandi, JASA 88, 1993).
     """
     s = np.sqrt(fit.sse / rng.chisquare(fit.df_error, draws))
     normal = rng.standard_normal((draws, len(fit.terms)))
-    return fit.coef + s[:, None] * (normal @ fit.r_inverse.T), s
+    coef = fit.coef + s[:, None] * (normal @ fit.r_inverse.T)
+    test = fit.blocks
+    if test is None:
+        return coef, s
+    between = np.maximum(0.0, test.ss / rng.chisquare(test.df, draws) - s**2) / test.runs
+    error = np.sqrt(between / test.count) * rng.standard_normal(draws)
+    coef[:, fit.terms.index(CONSTANT)] += error
+    return coef, np.sqrt(s**2 + between)
 
 
 def prediction_draws(

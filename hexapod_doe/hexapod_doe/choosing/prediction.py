@@ -10,6 +10,7 @@ import pandas as pd
 from scipy import stats
 
 from hexapod_doe.analysis.results import Interval, Prediction
+from hexapod_doe.fitting.blocks import BlockTest
 from hexapod_doe.fitting.model import corners, labels, model_matrix
 from hexapod_doe.fitting.regression import Fit
 from hexapod_doe.fitting.transform import Transform
@@ -20,7 +21,8 @@ def half_widths(
 ) -> np.ndarray:
     """Return half widths of the intervals at some points (m, p), on the fitted scale.
 
-    t·s·√q for the mean, t·s·√(q + 1/m) for the mean of m new runs; q = x₀'(X'X)⁻¹x₀.
+    t·s·√q for the mean, t·s·√(q + 1/m) for the mean of m new runs; q = x₀'(X'X)⁻¹x₀. Blocks add
+    the variance between them, see `_with_blocks`.
 
     Args:
         fit: A fit with degrees of freedom for error.
@@ -29,7 +31,31 @@ def half_widths(
         new_runs: m, or None for the mean itself.
     """
     variance = fit.unscaled_variance(points) + (1 / new_runs if new_runs else 0)
-    return stats.t.ppf((1 + level) / 2, fit.df_error) * (fit.s or 0) * np.sqrt(variance)
+    squared = variance * (fit.s or 0) ** 2
+    df = np.full_like(squared, fit.df_error)
+    if fit.blocks is not None:
+        squared, df = _with_blocks(fit, fit.blocks, squared, new_runs)
+    return stats.t.ppf((1 + level) / 2, df) * np.sqrt(squared)
+
+
+def _with_blocks(
+    fit: Fit, blocks: BlockTest, squared: np.ndarray, new_runs: int | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Add the variance between blocks to squared standard errors; return them with their df.
+
+    σ²_block/B in the mean over B blocks and σ²_block/m in m new runs, each of a block of its own.
+    By Satterthwaite, with σ²_block = (MS_block − s²)/runs where that is positive.
+    """
+    error = (fit.s or 0) ** 2
+    between = blocks.variance(error)
+    if between == 0:
+        return squared, np.full_like(squared, fit.df_error)
+    share = 1 / blocks.count + (1 / new_runs if new_runs else 0)
+    total = squared + share * between
+    from_blocks = share * blocks.mean_square / blocks.runs
+    rest = total - from_blocks
+    df = total**2 / (from_blocks**2 / blocks.df + rest**2 / fit.df_error)
+    return total, df
 
 
 def back(eta: np.ndarray, transform: Transform | None) -> np.ndarray:

@@ -6,6 +6,9 @@
 A fit with blocks has a column for each difference between them. By the theorem of Frisch, Waugh
 and Lovell its other coefficients and residuals are those of a fit in which the blocks have been
 projected out of the response and of every column, which is how it is computed here.
+
+A seed or a day is one of many that might have been: what is said of means and of new runs
+carries the variance between blocks, as in a model with random blocks.
 """
 
 from dataclasses import dataclass
@@ -24,6 +27,22 @@ class BlockTest:
     df: int
     f: float | None
     p: float | None
+    runs: float
+    """Runs of a block, on average."""
+
+    @property
+    def count(self) -> int:
+        """How many blocks there are."""
+        return self.df + 1
+
+    @property
+    def mean_square(self) -> float:
+        """Mean square between blocks, expected to be σ² + runs·σ²_block."""
+        return self.ss / self.df
+
+    def variance(self, error: float) -> float:
+        """Return the estimated variance between blocks, given that of the error; never below 0."""
+        return max(0.0, self.mean_square - error) / self.runs
 
 
 def no_blocks(rows: int) -> np.ndarray:
@@ -55,7 +74,9 @@ def without_blocks(values: np.ndarray, basis: np.ndarray) -> np.ndarray:
     return values - basis @ (basis.T @ values)
 
 
-def block_test(sse: float, df_error: int, sse_without: float, df: int) -> BlockTest | None:
+def block_test(
+    sse: float, df_error: int, sse_without: float, df: int, rows: int
+) -> BlockTest | None:
     """Test the blocks; None where there is only one.
 
     Args:
@@ -63,11 +84,12 @@ def block_test(sse: float, df_error: int, sse_without: float, df: int) -> BlockT
         df_error: Its degrees of freedom.
         sse_without: Error sum of squares of the same terms without blocks.
         df: Blocks less one.
+        rows: Runs in all.
     """
     if not df:
         return None
     ss = max(sse_without - sse, 0.0)
     if not df_error or sse <= 0:
-        return BlockTest(ss, df, None, None)
+        return BlockTest(ss, df, None, None, rows / (df + 1))
     f = (ss / df) / (sse / df_error)
-    return BlockTest(ss, df, f, float(stats.f.sf(f, df, df_error)))
+    return BlockTest(ss, df, f, float(stats.f.sf(f, df, df_error)), rows / (df + 1))

@@ -9,13 +9,14 @@ and failing runs make the variance differ by case.
 """
 
 import numpy as np
+import pandas as pd
 from scipy import stats
 
 from hexapod_doe.analysis.findings import EstimandResult, Estimate
 from hexapod_doe.choosing.estimands import Estimand, estimand, pseudo_values
 from hexapod_doe.choosing.prediction import rank_descending
 from hexapod_doe.fitting.model import corners, estimable_terms, labels, model_matrix
-from hexapod_doe.tables.table import RunTable
+from hexapod_doe.tables.table import BLOCK, RunTable
 
 STATED = ('mean', 'iqm', 'best_of:3')
 RESAMPLES = 2000
@@ -52,7 +53,7 @@ def estimate(
     fits = weights @ response
     case = table.rows.groupby('case').ngroup().to_numpy()
     if item.name == 'mean':
-        low, high = _bootstrap(weights, response, case, level, rng)
+        low, high = _bootstrap(weights, response, case, _complete_blocks(table), level, rng)
     else:
         low, high = _within_cases(weights, response, case, level)
     names = labels(grid)
@@ -72,23 +73,37 @@ def estimate(
     )
 
 
+def _complete_blocks(table: RunTable) -> np.ndarray | None:
+    """Return the number of each run's block if every case has one run of every block (n,)."""
+    if not table.block_column:
+        return None
+    counts = pd.crosstab(table.rows['case'], table.rows[BLOCK])
+    return pd.factorize(table.rows[BLOCK])[0] if (counts == 1).all(axis=None) else None
+
+
 def _bootstrap(
     weights: np.ndarray,
     response: np.ndarray,
     case: np.ndarray,
+    block: np.ndarray | None,
     level: float,
     rng: np.random.Generator,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return expanded percentile intervals, resampling the runs within each case.
 
+    Where every case has a run of every block, blocks are resampled, the same in all cases.
     The percentile α' = Φ(−√(n/(n−1))·t₍₁₋α/₂; n−1₎) makes up for the small n of a case
     (Hesterberg, The American Statistician 69, 2015).
     """
     means, sums, fewest = [], [], len(response)
+    shared = None if block is None else rng.choice(block.max() + 1, (RESAMPLES, block.max() + 1))
     for number in range(case.max() + 1):
         rows = np.flatnonzero(case == number)
         fewest = min(fewest, len(rows))
-        picks = rng.choice(response[rows], (RESAMPLES, len(rows)))
+        if block is None or shared is None:
+            picks = rng.choice(response[rows], (RESAMPLES, len(rows)))
+        else:
+            picks = response[rows[np.argsort(block[rows])]][shared]
         means.append(picks.mean(axis=1))
         sums.append(weights[:, rows].sum(axis=1))
     draws = np.array(means).T @ np.array(sums)

@@ -171,8 +171,8 @@ def _block_test(
 ) -> BlockTest | None:
     q = linalg.qr(matrix, mode='economic')[0]
     rest = response - q @ (q.T @ response)
-    df_error = len(matrix) - matrix.shape[1] - basis.shape[1]
-    return block_test(sse, df_error, float(rest @ rest), basis.shape[1])
+    rows, df = len(matrix), basis.shape[1]
+    return block_test(sse, rows - matrix.shape[1] - df, float(rest @ rest), df, rows)
 
 
 def _press(residuals: np.ndarray, leverage: np.ndarray) -> float | None:

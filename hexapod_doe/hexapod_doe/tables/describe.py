@@ -110,7 +110,8 @@ def _block_caveats(analysis: Analysis) -> list[str]:
         return []
     text = (
         f'Runs are compared within {design.blocks} blocks by {design.block_column}: effects and '
-        'differences between sets are free of them, interval of a mean holds for these blocks.'
+        'differences between sets are free of them, intervals of means and of new runs allow for '
+        'other blocks.'
     )
     if test.p is not None:
         differ = 'differ' if test.p < analysis.options['alpha'] else "don't differ"
