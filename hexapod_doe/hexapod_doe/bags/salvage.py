@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import fcntl
 import itertools
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -25,6 +26,9 @@ from hexapod_doe.bags.bag_writer import BagWriter
 from hexapod_doe.bags.rosbag2 import Topic, offered_qos, partial_path
 from hexapod_doe.bags.run_bag import RUN_RECORD, SALVAGED
 from hexapod_doe.errors import BagError
+
+_GLANCES = 5
+_GLANCE_S = 0.02
 
 
 def salvage(bag: str | Path) -> Path:
@@ -141,9 +145,21 @@ def _exclusive(bag: Path) -> Iterator[BinaryIO]:
     path = _file(partial_path(bag), bag)
     try:
         with path.open('rb') as stream:
-            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            _lock(stream)
             yield stream
     except FileNotFoundError as error:
         raise BagError(f'bag {bag}: no {path}, expected an unfinished recording') from error
     except BlockingIOError as error:
         raise BagError(f'bag {bag}: {path.parent} is still being written') from error
+
+
+def _lock(stream: BinaryIO) -> None:
+    """Lock a file, or find it locked by more than the glance of somebody who watches."""
+    for _ in range(_GLANCES):
+        try:
+            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            time.sleep(_GLANCE_S)
+        else:
+            return
+    fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
