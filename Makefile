@@ -64,7 +64,7 @@ bench: setup  ## measure speed, as ratios within one run
 	@$(ENTER); for bench in tests/benchmarks/bench_*.py; do echo "== $$bench"; python $$bench || exit 1; done
 
 film: setup  ## film the robot on its way, without a display
-	@$(ENTER); ros2 run hexapod_agent film --out walk.gif --strip docs/images/walk.png \
+	@$(ENTER); ros2 run hexapod_agent film ros_ws/src/hexapod_bringup/agents/ABCDE.pt --out walk.gif --strip docs/images/walk.png \
 		--width 330 --height 250 --zoom 1.7 --seconds 1.5 --seed 3
 
 clean-demo:  ## forget the demo campaign
