@@ -17,7 +17,7 @@ from hexapod_doe.campaigns.leash import leashed
 
 LIFELINE = 'HEXAPOD_LIFELINE'
 """Environment variable that tells a worker to end when its standard input does."""
-_STOP_S = 10.0
+_STOP_S = 8.0  # all of them together; the manager's own end is limited, too
 _SHORT_LIFE_S = 10.0
 _LONGEST_PAUSE_S = 30.0
 
@@ -98,14 +98,15 @@ class LocalWorkers:
         return False
 
     def stop(self) -> None:
-        """Ask every worker to end, and end those that do not."""
+        """Ask every worker to end, and end those that have not after a while."""
         processes = [place.process for place in self._places if place.process is not None]
         for process in processes:
             if process.poll() is None:
                 process.send_signal(signal.SIGINT)
+        deadline = time.monotonic() + _STOP_S
         for process in processes:
             try:
-                process.wait(_STOP_S)
+                process.wait(max(deadline - time.monotonic(), 0.0))
             except subprocess.TimeoutExpired:
                 _kill_group(process)
                 process.wait()

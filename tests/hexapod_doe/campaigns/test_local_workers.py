@@ -126,5 +126,14 @@ def test_stopping_ends_all_of_them(folder, workers):
     assert not any(alive(pid) for pid in pids)
 
 
+def test_stopping_does_not_wait_for_one_that_hangs(folder, workers, monkeypatch):
+    pids = [until(lambda n=n: identity(folder / f'worker_{n}')) for n in (1, 2)]
+    for pid in pids:
+        os.kill(pid, signal.SIGSTOP)
+    monkeypatch.setattr('hexapod_doe.campaigns.local_workers._STOP_S', 0.5)
+    workers.stop()
+    assert not any(alive(pid) for pid in pids)
+
+
 def test_both_ends_of_the_lifeline_have_one_name():
     assert LIFELINE == lifeline.LIFELINE
