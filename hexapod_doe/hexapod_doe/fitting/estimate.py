@@ -95,18 +95,15 @@ def _bootstrap(
     The percentile α' = Φ(−√(n/(n−1))·t₍₁₋α/₂; n−1₎) makes up for the small n of a case
     (Hesterberg, The American Statistician 69, 2015).
     """
-    means, sums, fewest = [], [], len(response)
-    shared = None if block is None else rng.choice(block.max() + 1, (RESAMPLES, block.max() + 1))
-    for number in range(case.max() + 1):
-        rows = np.flatnonzero(case == number)
-        fewest = min(fewest, len(rows))
-        if block is None or shared is None:
-            picks = rng.choice(response[rows], (RESAMPLES, len(rows)))
-        else:
-            picks = response[rows[np.argsort(block[rows])]][shared]
-        means.append(picks.mean(axis=1))
-        sums.append(weights[:, rows].sum(axis=1))
-    draws = np.array(means).T @ np.array(sums)
+    cases = [np.flatnonzero(case == number) for number in range(case.max() + 1)]
+    if block is None:
+        picks = [rng.choice(rows, (RESAMPLES, len(rows))) for rows in cases]
+    else:
+        shared = rng.choice(block.max() + 1, (RESAMPLES, block.max() + 1))
+        picks = [rows[np.argsort(block[rows])][shared] for rows in cases]
+    means = np.array([response[pick].mean(axis=1) for pick in picks])
+    draws = means.T @ np.array([weights[:, rows].sum(axis=1) for rows in cases])
+    fewest = min(map(len, cases))
     t = stats.t.ppf((1 + level) / 2, fewest - 1)
     tail = stats.norm.cdf(-np.sqrt(fewest / (fewest - 1)) * t)
     low, high = np.quantile(draws, [tail, 1 - tail], axis=0)
