@@ -1,0 +1,132 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""A row gives the same results in a fleet as on the graph, and may change between the two."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from hexapod_agent.agent_node import AgentNode
+from hexapod_agent.config import AgentConfig
+from hexapod_agent.fleet.crew import Crew
+from hexapod_agent.run_checkpoint import checkpoint_path
+from hexapod_agent.training import Trainer, TrainingDivergedError
+from hexapod_cpg.cpg_node import CpgNode
+from hexapod_doe.bags.run_record import read_run
+from hexapod_doe.bags.verify import verify
+from hexapod_doe.campaigns.campaign import Row, RunSettings
+from hexapod_doe.campaigns.fleet_row import FleetRow
+from hexapod_doe.campaigns.messages import train_goal
+from hexapod_doe.recorder_node import RecorderNode
+from hexapod_doe.run_fleet import build_fleet
+from hexapod_sim.sim_node import SimNode
+
+pytestmark = pytest.mark.graph
+EPISODES = 5
+SHORT = (
+    'task: {time_limit_steps: 20}\nddpg: {batch_size: 8}\n'
+    'actor: {hidden: [16, 16]}\ncritic: {hidden: [16, 16]}\n'
+    'training: {checkpoint_every: 2}\n'
+)
+
+
+class Quiet:
+    """Follows a row without a word, but for what should not happen."""
+
+    def __init__(self) -> None:
+        self.error: Exception | None = None
+
+    def log(self, text: str) -> None:
+        raise AssertionError(text)
+
+    def episode(self, row, summary) -> None:
+        """Say nothing."""
+
+    def end(self, row, error) -> None:
+        self.error = error
+
+
+@pytest.fixture
+def config(tmp_path: Path) -> Path:
+    path = tmp_path / 'short.yaml'
+    path.write_text(SHORT)
+    return path
+
+
+@pytest.fixture
+def on_graph(graph, config: Path) -> Callable[[Row], str]:
+    """Return a function that has a worker train a row; what it returns is why that failed."""
+    graph.add(SimNode(), CpgNode(), RecorderNode(), AgentNode())
+    settings = RunSettings(EPISODES, str(config))
+    return lambda row: graph.train(train_goal(row, settings)).result.message
+
+
+@pytest.fixture
+def in_fleet(config: Path) -> Callable[[Row], Exception | None]:
+    """Return a function that has a fleet train a row; what it returns is why that failed."""
+
+    def train(row: Row) -> Exception | None:
+        watch, settings = Quiet(), AgentConfig.load(config)
+        with Crew(2) as crew:
+            fleet = build_fleet(settings, [row.observations], 1, crew, 'cpu')
+            fleet.train(iter([FleetRow(row, settings, EPISODES, 'cpu', watch)]))
+        return watch.error
+
+    return train
+
+
+@pytest.fixture
+def row(tmp_path: Path) -> Callable[[str], Row]:
+    return lambda name: Row('r', 'BE', 4, tmp_path / name, {'case': '3'})
+
+
+@pytest.fixture
+def cut(monkeypatch) -> Callable[[int], None]:
+    """Return a function that cuts runs in the middle of an episode."""
+    act = Trainer.observe
+
+    def at(episode: int) -> None:
+        def observe(self, observation, outcome):
+            if self.episode == episode and outcome.step == 10:
+                raise TrainingDivergedError(f'cut in episode {episode}')
+            return act(self, observation, outcome)
+
+        monkeypatch.setattr(Trainer, 'observe', observe)
+
+    return at
+
+
+def results(row: Row) -> pd.DataFrame:
+    verify(row.bag)
+    return read_run(row.bag).episodes
+
+
+def test_a_fleet_gives_the_results_of_the_graph(on_graph, in_fleet, row) -> None:
+    assert on_graph(row('graph')) == ''
+    assert in_fleet(row('fleet')) is None
+    ours, theirs = results(row('fleet')), results(row('graph'))
+    assert theirs['updates'].iloc[-1] == 20
+    pd.testing.assert_frame_equal(ours, theirs, check_exact=True)
+    kept, expected = (read_run(row(name).bag).metadata for name in ('fleet', 'graph'))
+    for key in ('run_id', 'observations', 'seed', 'mode', 'episodes', 'config', 'case', 'status'):
+        assert kept[key] == expected[key]
+
+
+def test_either_goes_on_where_the_other_was_cut(on_graph, in_fleet, row, cut) -> None:
+    assert in_fleet(row('whole')) is None
+    cut(3)
+    assert 'cut in episode 3' in str(in_fleet(row('first in fleet')))
+    assert 'cut in episode 3' in on_graph(row('first on graph'))
+    cut(-1)
+    assert on_graph(row('first in fleet')) == ''
+    assert in_fleet(row('first on graph')) is None
+    whole = results(row('whole')).drop(columns='stamp_ns')
+    for name in ('first in fleet', 'first on graph'):
+        found = results(row(name)).drop(columns='stamp_ns')
+        pd.testing.assert_frame_equal(found, whole, check_exact=True)
+        assert read_run(row(name).bag).metadata['resumed'] == '2'
+        assert not checkpoint_path(row(name).bag).exists()
