@@ -1,0 +1,142 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Where the processor time of a control period goes, in a composed worker that does not learn.
+
+Run: `python tests/benchmarks/bench_parts.py`. The worker runs in this process, with a clock around
+each part. DDS is what is spent outside of all callbacks, and in publishing: it contains turning
+messages into bytes and back. Python is the rest: filling and reading messages, observations,
+rewards, coroutines. Processor time, for other load only ever adds to the time on the wall.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+# Before rclpy is imported: the nodes of this process are all that there is.
+os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'OFF'
+os.environ.setdefault('OMP_NUM_THREADS', '1')
+
+import rclpy
+from hexapod_agent.training import Trainer
+from hexapod_bringup.worker_node import make_worker
+from hexapod_cpg.locomotion import Locomotion
+from hexapod_interfaces.action import TrainRun
+from hexapod_sim.simulation import Simulation
+from rclpy.action import ActionClient
+from rclpy.experimental.events_executor import EventsExecutor
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.task import Future
+from rich.console import Console
+from rich.table import Table
+
+OBSERVATIONS = 'ABCDE'
+PERIODS = 600
+EPISODES = 5
+INSIDE = ('physics', 'pattern generator', 'actor and noise', 'publishing')
+"""Parts that lie within callbacks, and not within each other."""
+spent: Counter[str] = Counter()
+"""Seconds by part."""
+
+
+def timed(part: str, function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return the function with a clock around it."""
+
+    def call(*args: Any, **options: Any) -> Any:
+        begin = time.thread_time()
+        try:
+            return function(*args, **options)
+        finally:
+            spent[part] += time.thread_time() - begin
+
+    return call
+
+
+def watch() -> None:
+    """Put clocks around everything that is made from here on."""
+    Simulation.advance = timed('physics', Simulation.advance)
+    Locomotion.play = timed('pattern generator', Locomotion.play)
+    Trainer.observe = timed('actor and noise', Trainer.observe)
+    Publisher.publish = timed('publishing', Publisher.publish)
+    subscribe = Node.create_subscription
+
+    def create_subscription(node: Node, kind: type, topic: str, callback: Any, *rest: Any, **more):
+        return subscribe(node, kind, topic, timed('callbacks', callback), *rest, **more)
+
+    Node.create_subscription = create_subscription
+
+
+class Worker:
+    """A composed worker in this process, and a client of it."""
+
+    def __init__(self, config: Path) -> None:
+        self._config = str(config)
+        self._nodes = [*make_worker(), Node('bench')]
+        self._executor = EventsExecutor()
+        for node in self._nodes:
+            self._executor.add_node(node)
+        self._client = ActionClient(self._nodes[-1], TrainRun, 'train_run')
+
+    def train(self, episodes: int) -> None:
+        """Have it run some episodes."""
+        goal = TrainRun.Goal(
+            observations=OBSERVATIONS, seed=1, episodes=episodes, config=self._config
+        )
+        handle = self._wait(self._client.send_goal_async(goal))
+        response = self._wait(handle.get_result_async())
+        assert not response.result.message, response.result.message
+
+    def close(self) -> None:
+        """End it."""
+        self._executor.shutdown()
+        for node in self._nodes:
+            node.destroy_node()
+
+    def _wait(self, future: Future) -> Any:
+        while not future.done():
+            self._executor.spin_once(timeout_sec=0.1)
+        return future.result()
+
+
+def measure(config: Path) -> float:
+    """Return the seconds of a run after a first one that warms the worker up."""
+    worker = Worker(config)
+    worker.train(1)
+    spent.clear()
+    begin = time.process_time()
+    worker.train(EPISODES)
+    whole = time.process_time() - begin
+    worker.close()
+    return whole
+
+
+def main() -> None:
+    """Print the table."""
+    watch()
+    rclpy.init()
+    with tempfile.TemporaryDirectory() as directory:
+        config = Path(directory) / 'no_learner.yaml'
+        config.write_text('ddpg: {batch_size: 100000}\n')  # the buffer never holds a batch
+        whole = measure(config)
+    rclpy.try_shutdown()
+    inside = sum(spent[part] for part in INSIDE)
+    parts = {part: spent[part] for part in INSIDE[:3]}
+    parts['DDS'] = whole - spent['callbacks'] + spent['publishing']
+    parts['Python'] = spent['callbacks'] - inside
+    table = Table('part of a control period', 'µs', 'share')
+    for name, seconds in (parts | {'all of it': whole}).items():
+        table.add_row(
+            name, f'{seconds / (EPISODES * PERIODS) * 1e6:.0f}', f'{seconds / whole:.0%}'
+        )
+    Console().print(table)
+
+
+if __name__ == '__main__':
+    main()
