@@ -8,15 +8,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import pytest
-from diagnostic_msgs.msg import DiagnosticArray
 from hexapod_agent.config import AgentConfig
 from hexapod_agent.contract.limits import Limits, parse_frames
 from hexapod_agent.contract.messages import listen_and_check
 from hexapod_agent.contract.report import SensorReport
 from hexapod_agent.observation import LETTERS, ObservationSpec
 from hexapod_agent.play_node import PlayNode
+from hexapod_agent.real_time import State
 from hexapod_agent.training import Trainer
 from hexapod_cpg.cpg_node import CpgNode
+from hexapod_cpg.locomotion import Motion
 from hexapod_node.coroutines import start
 from hexapod_sim.driver_channels import CHANNELS
 from hexapod_sim.driver_faults import fault_names
@@ -32,7 +33,7 @@ from hexapod_sim import robot
 pytestmark = pytest.mark.graph
 SMALL = {'actor': {'hidden': [16, 12]}, 'critic': {'hidden': [16, 12]}}
 # A busy machine may hold up a whole process for a while: time goes slower, by the sim's clock.
-FACTOR = 0.4
+FACTOR = 0.5
 AGE_S = 0.4
 AGES = [f'{p.name}:={AGE_S}' for p in real_time.PARAMETERS if p.name.startswith('max_age')]
 
@@ -91,36 +92,39 @@ class Robot:
         self.graph = graph
         self.limits = Limits(AGE_S, silence=1.5, frames=parse_frames(frames(swapped)))
         self.x = 0.0
-        self.state = self.motion = self.reason = ''
         self.targets: list[float] = []
         self.drivers = {channel: self._driver(channel) for channel in swapped}
         node = graph.nodes[0]
-        node.create_subscription(DiagnosticArray, '/diagnostics', self._on_diagnostics, 10)
         node.create_subscription(Odometry, 'odom', self._on_odometry, 10)
         node.create_subscription(JointTrajectory, 'joint_trajectory', self._on_targets, 10)
-        self.play = graph.add(PlayNode(), *self.drivers.values(), SimNode(), CpgNode())
+        graph.add(*self.drivers.values(), SimNode())
+        self.play, self.cpg = graph.add(PlayNode()), graph.add(CpgNode())
 
     def walks_on(self) -> None:
         """Wait until the robot has come a step further."""
-        self.graph.until(lambda: self.state == 'driving')
+        self.until_it_is(State.DRIVING)
         here = self.x
         self.graph.until(lambda: self.x > here + 0.02)
 
     def stops(self) -> None:
         """Wait until the robot stands in its standing pose."""
-        self.graph.until(lambda: self.state in ('holding', 'refused'))
-        standing = robot.NEUTRAL_POSE.tolist()
-        self.graph.until(lambda: self.motion == 'standing' and self.targets == standing)
+        self.until_it_is(State.HOLDING)
+        self.graph.until(lambda: self.cpg._locomotion.motion is Motion.STANDING)
+        self.graph.until(lambda: self.targets == robot.NEUTRAL_POSE.tolist())
+
+    def until_it_is(self, state: State) -> None:
+        """Wait for what the agent does."""
+        self.graph.until(lambda: self.play._play.state is state)
 
     def set_fault(self, channel: str, fault: str) -> None:
         """Break a driver, or mend it."""
         done = self.drivers[channel].set_parameters([Parameter('fault', value=fault)])
         assert done[0].successful, done[0].reason
 
-    def check(self, seconds: float = 0.6) -> SensorReport:
+    def check(self, seconds: float = 0.6, reliable: bool = False) -> SensorReport:
         """Check the sensors as the agent hears them."""
         checked = listen_and_check(
-            self.graph.nodes[0], ObservationSpec(LETTERS), seconds, self.limits, discovery_s=1.0
+            self.graph.nodes[0], ObservationSpec(LETTERS), seconds, self.limits, reliable, 1.0
         )
         return self.graph.result(start(checked))
 
@@ -134,14 +138,6 @@ class Robot:
         }
         parameters = [Parameter(name, value=value) for name, value in settings.items()]
         return FakeDriverNode(f'driver_{channel.replace("/", "_")}', parameters)
-
-    def _on_diagnostics(self, message: DiagnosticArray) -> None:
-        for status in message.status:
-            values = {entry.key: entry.value for entry in status.values}
-            if status.name == '/play: state':
-                self.state, self.reason = values['state'], status.message
-            elif status.name == '/cpg: state':
-                self.motion = values['motion']
 
     def _on_odometry(self, message: Odometry) -> None:
         self.x = message.pose.pose.position.x
@@ -234,14 +230,17 @@ def assert_named_and_stopped(walking: Robot, channel: str, fault: str) -> None:
     walking.stops()
     walking.set_fault(channel, '')
     walking.walks_on()
-    assert walking.check().passed
 
 
 def test_the_robot_walks_with_drivers_of_every_channel_and_stops_when_one_breaks(walking) -> None:
     heard = {subscription.topic_name for subscription in walking.play.subscriptions}
-    assert {f'/{own}' for own in remaps(list(DEVICES)).values()} <= heard
+    swaps = remaps(list(DEVICES))
+    assert {f'/{own}' for own in swaps.values()} <= heard
     report = walking.check()
     assert report.passed, report.refusal
+    lock_step = walking.check(reliable=True).faults
+    assert {fault.kind for fault in lock_step} == {'qos_mismatch'}
+    assert {fault.topic for fault in lock_step} == {f'/{own}' for own in swaps.values()}
     for channel, fault in (
         ('foot_contacts', 'stopped'),
         ('joint_states', 'wrong_length'),
@@ -252,6 +251,7 @@ def test_the_robot_walks_with_drivers_of_every_channel_and_stops_when_one_breaks
         ('imu/data', 'flipped_gravity'),
     ):
         assert_named_and_stopped(walking, channel, fault)
+    assert walking.check().passed
 
 
 @pytest.mark.slow
@@ -259,6 +259,7 @@ def test_the_robot_walks_with_drivers_of_every_channel_and_stops_when_one_breaks
 def test_every_fault_of_every_driver_is_named_and_stops_the_robot(walking, channel: str) -> None:
     for fault in fault_names(channel):
         assert_named_and_stopped(walking, channel, fault)
+    assert walking.check().passed
 
 
 @pytest.mark.slow

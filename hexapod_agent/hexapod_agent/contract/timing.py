@@ -134,13 +134,13 @@ def gaps_s(clock: Clock) -> NDArray[np.float64]:
 def median_lag_s(samples: tuple[Sample, ...], clocks: list[Clock]) -> float:
     """Return how far the stamps lie behind the other channels' when they arrive [s].
 
-    The time at an arrival is the median of the channels' newest stamps then. It needs no common
-    clock with the drivers: simulated time, a bag and wall time are alike.
+    The time at an arrival is the median of the channels' stamps, between two samples on a line. It
+    needs no common clock with the drivers: simulated time, a bag and wall time are alike.
     """
     arrivals, stamps = clock_of(samples)
-    newest = np.full((len(clocks), len(arrivals)), np.nan)
-    for row, (came, stamped) in zip(newest, clocks, strict=True):
-        index = np.searchsorted(came, arrivals, side='right') - 1
-        row[:] = np.where(index < 0, np.nan, (stamped[index] - stamps[0]) * 1e-9)
-    now = np.nanmedian(newest, axis=0)
-    return float(np.median(now - (stamps - stamps[0]) * 1e-9))
+    began, first = arrivals[0], stamps[0]
+    stamped = [
+        np.interp((arrivals - began) * 1e-9, (came - began) * 1e-9, (stamp - first) * 1e-9)
+        for came, stamp in clocks
+    ]
+    return float(np.median(np.median(stamped, axis=0) - (stamps - first) * 1e-9))
