@@ -76,8 +76,20 @@ class AgentNode(Node):
         return GoalResponse.ACCEPT
 
     async def _train(self, goal_handle: ServerGoalHandle) -> TrainRun.Result:
-        """Run one goal to its end; an error ends the run, not the node."""
+        """Run one goal to its end, then make ready for the next."""
+        result = await self._execute(goal_handle)
+        # Leave the callback that brought the last sample before its subscription goes.
+        await sleep(self, 0.0)
+        ended, self._run = self._run, None
+        self._reserved = False
+        if ended is not None:
+            ended.destroy()
+        return result
+
+    async def _execute(self, goal_handle: ServerGoalHandle) -> TrainRun.Result:
+        """Run one goal; an error ends the run, not the node."""
         goal = goal_handle.request
+        self._last_error = ''
         try:
             spec, config, agent = trained(goal) if goal.checkpoint else self._untrained(goal)
             self._run = GraphRun(self, goal_handle, spec, config, agent)
@@ -88,13 +100,6 @@ class AgentNode(Node):
             if goal_handle.is_active:
                 goal_handle.abort()
             return TrainRun.Result(message=str(error))
-        finally:
-            # Leave the callback that brought the last sample before its subscription goes.
-            await sleep(self, 0.0)
-            ended, self._run = self._run, None
-            self._reserved = False
-            if ended is not None:
-                ended.destroy()
 
     def _untrained(self, goal: TrainRun.Goal) -> tuple[ObservationSpec, AgentConfig, Trainer]:
         spec = ObservationSpec(goal.observations)

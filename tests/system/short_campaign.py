@@ -25,7 +25,7 @@ actor: {hidden: [16, 16]}
 critic: {hidden: [16, 16]}
 training: {checkpoint_every: 2}
 """
-FOUR_RUNS = '--generators C=AB --factors 3'
+TWO_RUNS = '--generators B=A --factors 2'
 SIXTEEN_RUNS = '--generators E=ABCD --factors 5'
 MANAGER = (
     'ros2 run hexapod_doe manager_node --ros-args -p plan:={plan} -p episodes:={episodes} '

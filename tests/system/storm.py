@@ -39,10 +39,10 @@ class Storm:
     def strike(self) -> None:
         """Wait for a moment and kill a process; start the manager again if it was the one."""
         if self._random.random() < 0.4:  # while processes start, as like as not
-            time.sleep(self._random.uniform(0.0, _LONGEST_EARLY_S))
+            self._wait(1, self._random.uniform(0.0, _LONGEST_EARLY_S))
         else:
-            self._wait_for_progress(int(self._random.integers(1, 8)))
-            time.sleep(self._random.uniform(0.0, 0.3))
+            self._wait(int(self._random.integers(1, 8)), _LONGEST_WAIT_S)
+            time.sleep(self._random.uniform(0.0, 0.02))
         assert self.manager.poll() is None, 'the campaign ended before the storm did'
         victims = [self.manager.pid, *children(self.manager.pid)]
         victim = int(self._random.choice(victims))
@@ -52,12 +52,12 @@ class Storm:
             self.manager.wait()
             self.manager = self._start()
 
-    def _wait_for_progress(self, events: int) -> None:
-        """Wait until bags have grown so many times, or for long."""
-        deadline = time.monotonic() + _LONGEST_WAIT_S
+    def _wait(self, events: int, longest_s: float) -> None:
+        """Wait until bags have grown so many times, but no longer than that."""
+        deadline = time.monotonic() + longest_s
         before = self._size()
         while events and time.monotonic() < deadline and self.manager.poll() is None:
-            time.sleep(0.02)
+            time.sleep(0.005)
             now = self._size()
             events -= now != before
             before = now
@@ -74,5 +74,10 @@ class Storm:
 
 def children(pid: int) -> list[int]:
     """Return the processes that a process has started, oldest first."""
-    tasks = Path(f'/proc/{pid}/task').glob('*/children')
-    return sorted(int(child) for task in tasks for child in task.read_text().split())
+    found: set[int] = set()
+    for task in Path(f'/proc/{pid}/task').glob('*/children'):
+        try:
+            found.update(map(int, task.read_text().split()))
+        except (FileNotFoundError, ProcessLookupError):  # a thread that has ended meanwhile
+            continue
+    return sorted(found)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from .short_campaign import FOUR_RUNS, ShortCampaign
+from .short_campaign import TWO_RUNS, ShortCampaign
 from .storm import children
 
 pytestmark = pytest.mark.system
@@ -21,7 +21,7 @@ WORKER = 'ros2 run hexapod_bringup worker_node --ros-args -r __ns:=/far'
 
 @pytest.fixture
 def campaign(shell) -> ShortCampaign:
-    return ShortCampaign(shell, shell.directory / 'campaign', FOUR_RUNS, 8)
+    return ShortCampaign(shell, shell.directory / 'campaign', TWO_RUNS, 60)
 
 
 def results_of(campaign: ShortCampaign, worker: str) -> bool:
@@ -89,8 +89,8 @@ def mount(*options: str) -> bool:
 
 
 def test_a_full_disk_ends_the_campaign_and_loses_nothing(shell, small_disk: Path) -> None:
-    campaign = ShortCampaign(shell, small_disk, FOUR_RUNS, 8)
-    (small_disk / 'thesis.pdf').write_bytes(bytes(1_600_000))
+    campaign = ShortCampaign(shell, small_disk, TWO_RUNS, 20)
+    (small_disk / 'thesis.pdf').write_bytes(bytes(1_900_000))
     assert campaign.start(workers=1).wait(100.0) == 1, shell.output()
     complaint = f'campaign {small_disk}: cannot write: No space left on device; what is done stays'
     assert complaint in shell.output()
@@ -100,7 +100,7 @@ def test_a_full_disk_ends_the_campaign_and_loses_nothing(shell, small_disk: Path
 
 
 def test_a_read_only_folder_is_one_clear_error(shell, small_disk: Path) -> None:
-    campaign = ShortCampaign(shell, small_disk, FOUR_RUNS, 8)
+    campaign = ShortCampaign(shell, small_disk, TWO_RUNS, 20)
     assert mount('-o', 'remount,ro', str(small_disk))
     assert campaign.start(workers=1).wait(30.0) == 1
     (line,) = shell.output().strip().splitlines()

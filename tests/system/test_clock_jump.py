@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from .short_campaign import FOUR_RUNS, ShortCampaign
+from .short_campaign import TWO_RUNS, ShortCampaign
 
 pytestmark = pytest.mark.system
 
@@ -46,7 +46,7 @@ def test_the_clock_of_the_test_jumps(shell, jump: Path) -> None:
 
 @pytest.mark.parametrize('seconds', [-3600, 3600])
 def test_a_clock_that_jumps_changes_nothing(shell, jump: Path, seconds: int) -> None:
-    campaign = ShortCampaign(shell, shell.directory / 'campaign', FOUR_RUNS, 4)
+    campaign = ShortCampaign(shell, shell.directory / 'campaign', TWO_RUNS, 20)
     manager = campaign.start(workers=1)
     shell.until(lambda: list(campaign.runs.glob('*/*.mcap')), timeout_s=60.0)
     set_clock(jump, seconds)

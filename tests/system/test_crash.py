@@ -8,7 +8,7 @@ from __future__ import annotations
 import pandas as pd
 import pytest
 
-from .short_campaign import FOUR_RUNS, SIXTEEN_RUNS, ShortCampaign
+from .short_campaign import SIXTEEN_RUNS, TWO_RUNS, ShortCampaign
 from .storm import Storm
 
 pytestmark = pytest.mark.system
@@ -24,7 +24,7 @@ def weather(campaign: ShortCampaign, kills: int, seed: int) -> Storm:
 
 
 def test_three_kills_change_no_result(shell) -> None:
-    campaign = ShortCampaign(shell, shell.directory / 'campaign', FOUR_RUNS, 8)
+    campaign = ShortCampaign(shell, shell.directory / 'campaign', TWO_RUNS, 32)
     weather(campaign, kills=3, seed=1)
     campaign.assert_as_alone()
 
@@ -32,9 +32,9 @@ def test_three_kills_change_no_result(shell) -> None:
 @pytest.mark.slow
 @pytest.mark.timeout(3600)
 def test_fifty_kills_change_no_result(shell, capsys) -> None:
-    calm = ShortCampaign(shell, shell.directory / 'calm', SIXTEEN_RUNS, 16)
+    calm = ShortCampaign(shell, shell.directory / 'calm', SIXTEEN_RUNS, 40)
     assert calm.start().wait(600.0) == 0, shell.output()
-    campaign = ShortCampaign(shell, shell.directory / 'stormy', SIXTEEN_RUNS, 16)
+    campaign = ShortCampaign(shell, shell.directory / 'stormy', SIXTEEN_RUNS, 40)
     storm = weather(campaign, kills=50, seed=2026)
     found, expected = campaign.results(), calm.results()
     assert found.keys() == expected.keys()
