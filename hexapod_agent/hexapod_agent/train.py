@@ -5,6 +5,7 @@
 
 import argparse
 import csv
+import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from hexapod_agent.env import HexapodLine
 from hexapod_agent.event_log import EventLog
 from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.summary import EpisodeSummary
-from hexapod_agent.training import Trainer
+from hexapod_agent.training import Trainer, TrainingDivergedError
 
 CHECKPOINT = 'checkpoint.pt'  # with the replay buffer: to resume
 AGENT = 'agent.pt'  # the actor alone: to evaluate and to keep
@@ -112,7 +113,11 @@ def main(args: Sequence[str] | None = None) -> None:
                 f'saturated {summary.saturated_share:.0%}',
             )
 
-        train(trainer, episodes, options.out, report)
+        try:
+            train(trainer, episodes, options.out, report)
+        except TrainingDivergedError as error:
+            progress.stop()
+            sys.exit(f'train: {error}; {options.out / CHECKPOINT} is from before')
     console.print(f'final average reward {trainer.average_return:.1f}')
     console.print(f'agent: {options.out / AGENT}')
     console.print(f'to resume: {options.out / CHECKPOINT}')

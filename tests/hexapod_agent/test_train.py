@@ -6,8 +6,10 @@
 import csv
 import re
 
+import numpy as np
 import pytest
 import yaml
+from hexapod_agent.training import Trainer
 
 from hexapod_agent import checkpoint, train
 
@@ -74,3 +76,25 @@ def test_finished_run_is_not_overwritten(config_file, tmp_path, capsys):
     with pytest.raises(SystemExit):
         run('--episodes', 1, '--config', config_file, '--out', tmp_path / 'run')
     assert 'expected --resume or another --out' in capsys.readouterr().err
+
+
+def test_divergence_is_named_and_leaves_the_checkpoint_before_it(
+    config_file, tmp_path, monkeypatch
+):
+    whole, part = tmp_path / 'whole', tmp_path / 'part'
+    run('--episodes', 4, '--config', config_file, '--out', whole)
+
+    def observe(trainer, observation, outcome):
+        if trainer.episode == 3 and outcome.step == 2:
+            observation = np.full_like(observation, np.nan)
+        return usual(trainer, observation, outcome)
+
+    usual = Trainer.observe
+    monkeypatch.setattr(Trainer, 'observe', observe)
+    with pytest.raises(SystemExit, match=r'joint_angles.*step 2 of episode 3, seed 1') as stopped:
+        run('--episodes', 4, '--config', config_file, '--out', part)
+    assert str(part / train.CHECKPOINT) in str(stopped.value)
+    monkeypatch.setattr(Trainer, 'observe', usual)
+    assert checkpoint.load(part / train.CHECKPOINT, to_resume=True).episode == 2
+    run('--episodes', 4, '--out', part, '--resume')
+    assert log(part) == log(whole)
