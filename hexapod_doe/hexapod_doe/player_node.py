@@ -103,14 +103,22 @@ class PlayerNode(Node):
         return [name for name in chosen if self._bag.types[name] != CLOCK_TYPE]
 
     def _messages(self) -> Iterator[RawMessage]:
-        start_ns = self._bag.start_ns + round(float(self._value('start')) * 1e9)
-        return self._bag.messages(self._topics, start_ns)
+        after_ns = round(float(self._value('start')) * 1e9)
+        return self._bag.messages(
+            self._topics, self._bag.start_ns + after_ns if after_ns else None
+        )
 
     def _on_due(self) -> None:
-        """Publish what is due, then sleep until the next is."""
+        """Publish what is due, then sleep until the next is; a damaged bag ends it."""
         wait_ns = self._playback.wait_ns(time.monotonic_ns())
         if wait_ns == 0:
-            self._publish(self._playback.take())
+            try:
+                self._publish(self._playback.take())
+            except BagError as error:
+                self.get_logger().error(f'{error}; {self._played} messages were played')
+                self._timer.cancel()
+                self.exit_status = 1
+                return
             wait_ns = self._playback.wait_ns(time.monotonic_ns())
         self._timer.timer_period_ns = _IDLE_NS if wait_ns is None else max(1, wait_ns)
         self._timer.reset()

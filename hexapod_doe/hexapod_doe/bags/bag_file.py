@@ -127,18 +127,42 @@ class BagFile:
     def messages(
         self, topics: Collection[str] | None = None, start_ns: int | None = None
     ) -> Iterator[RawMessage]:
-        """Yield the messages of some topics, or of all, from a time on, in the order of time."""
+        """Yield the messages of some topics, or of all, from a time on, in the order of time.
+
+        Raises:
+            BagError: the bag is damaged; where all of a topic is read, also if one is missing.
+        """
+        read = 0
         for file in self.files:
             with self._reading(file) as reader:
                 for _, channel, message in reader.iter_messages(topics, starting_at=start_ns):
+                    read += 1
                     yield RawMessage(channel.topic, message.log_time, message.data)
+        if start_ns is None:
+            self._check_read(read, self.counts if topics is None else topics)
 
     def decoded(self, topic: str) -> Iterator[tuple[int, Any]]:
-        """Yield (time [ns], message) of one topic, decoded by the definitions in the bag."""
+        """Yield (time [ns], message) of one topic, decoded by the definitions in the bag.
+
+        Raises:
+            BagError: the bag is damaged, or a message is missing.
+        """
+        read = 0
         for file in self.files:
             with self._reading(file) as reader:
                 for _, _, message, decoded in reader.iter_decoded_messages([topic]):
+                    read += 1
                     yield message.log_time, decoded
+        self._check_read(read, [topic])
+
+    def _check_read(self, read: int, topics: Collection[str]) -> None:
+        """Raise unless every message was read: a chunk of zeros goes by without an error."""
+        expected = sum(self.counts[topic] for topic in topics)
+        if read != expected:
+            raise BagError(
+                f'bag {self.path}: {read} of {expected} messages can be read, expected all: '
+                'a file of it is damaged'
+            )
 
     def _information(self) -> dict[str, Any]:
         if not self.path.is_dir():
