@@ -81,7 +81,7 @@ def _train(campaign: Campaign, config: AgentConfig, args: argparse.Namespace) ->
         Crew(args.threads) as crew,
         FleetCampaign(campaign, config, episodes, args.device) as rows,
     ):
-        build_fleet(config, due, slots, crew, args.device).train(rows.runs())
+        build_fleet(config, due, slots, crew, args.device).train(rows.take)
 
 
 def _parser() -> argparse.ArgumentParser:

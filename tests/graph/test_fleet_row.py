@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import pandas as pd
@@ -73,7 +74,8 @@ def in_fleet(config: Path) -> Callable[[Row], Exception | None]:
         watch, settings = Quiet(), AgentConfig.load(config)
         with Crew(2) as crew:
             fleet = build_fleet(settings, [row.observations], 1, crew, 'cpu')
-            fleet.train(iter([FleetRow(row, settings, EPISODES, 'cpu', watch)]))
+            runs = iter([FleetRow(row, settings, EPISODES, 'cpu', watch)])
+            fleet.train(partial(next, runs, None))
         return watch.error
 
     return train

@@ -3,7 +3,7 @@
 
 """The loop of a fleet: runs take free places, step side by side, and leave when they are done."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 
 from hexapod_sim.task import Outcome, episode_seed
@@ -35,17 +35,22 @@ class Fleet:
         self.steps = 0
         self.stopwatch = Stopwatch()
 
-    def train(self, runs: Iterator[Run]) -> None:
-        """Train every run to its end; the next one is asked for when a place is free."""
-        self._admit(runs)
+    def train(self, take: Callable[[], Run | None]) -> None:
+        """Train every run to its end.
+
+        Args:
+            take: Returns the next run, or None while there is none; asked at the start, and when
+                a place has become free.
+        """
+        self._admit(take)
         while self._seats:
             self._step()
             if self._close():
-                self._admit(runs)
+                self._admit(take)
 
-    def _admit(self, runs: Iterator[Run]) -> None:
+    def _admit(self, take: Callable[[], Run | None]) -> None:
         """Give the free places to the runs that come next."""
-        while self._free and (run := next(runs, None)) is not None:
+        while self._free and (run := take()) is not None:
             place = self._free.pop()
             observation, outcome = self._reset(place, run)
             seat = Seat(place, run, observation, outcome)
@@ -82,6 +87,7 @@ class Fleet:
 
     def _close(self) -> bool:
         """Close the episodes that are over; return whether a place has become free."""
+        seated = len(self._seats)
         for seat in list(self._seats):
             if seat.fault is None and (seat.outcome.terminated or seat.outcome.truncated):
                 seat.attempt(partial(self._end_episode, seat))
@@ -94,7 +100,7 @@ class Fleet:
             self._seats.remove(seat)
             self._free.append(seat.place)
             self._robots.actions[seat.place] = 0.0
-        return bool(self._free)
+        return len(self._seats) < seated
 
     def _end_episode(self, seat: Seat) -> None:
         """Close one run's episode and begin its next one, if it has one."""

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from contextlib import ExitStack
 from types import TracebackType
 from typing import Self
@@ -35,6 +34,7 @@ class FleetCampaign:
         self._dashboard = Dashboard(campaign, episodes)
         self._page = PageWriter(campaign.directory, self._dashboard.log)
         self._locks: dict[str, ExitStack] = {}
+        self._elsewhere: set[str] = set()
         self._failures: FailureLog | None = None
 
     def __enter__(self) -> Self:
@@ -49,24 +49,37 @@ class FleetCampaign:
         self._page.close()
         self._dashboard.close()
 
-    def runs(self) -> Iterator[FleetRow]:
-        """Yield the rows that are due, each begun when it is asked for.
-
-        A row that another process is at stays with that one.
+    def take(self) -> FleetRow | None:
+        """Begin the next row that is due and that no other process is at.
 
         Raises:
-            BagError: a row's bag cannot be written.
+            BagError: its bag cannot be written.
         """
+        elsewhere = []
         while (row := self._campaign.take(_NAME)) is not None:
-            try:
-                self._locks[row.run_id] = lock = ExitStack()
-                lock.enter_context(row_lock(row.bag))
-            except CampaignError as error:
+            if self._lock(row):
+                break
+            elsewhere.append(row)
+        for each in elsewhere:  # due again, should that process leave it
+            self._campaign.release(each)
+        if row is None:
+            return None
+        self._dashboard.begin(_place(row), row.run_id, row.observations)
+        self._page.refresh()
+        return FleetRow(row, self._config, self._episodes, self._device, self)
+
+    def _lock(self, row: Row) -> bool:
+        """Return whether the row is ours until it ends."""
+        lock = ExitStack()
+        try:
+            lock.enter_context(row_lock(row.bag))
+        except CampaignError as error:
+            if row.run_id not in self._elsewhere:
+                self._elsewhere.add(row.run_id)
                 self.log(str(error))
-                continue
-            self._dashboard.begin(_place(row), row.run_id, row.observations)
-            self._page.refresh()
-            yield FleetRow(row, self._config, self._episodes, self._device, self)
+            return False
+        self._locks[row.run_id] = lock
+        return True
 
     def log(self, text: str) -> None:
         """Show a line."""

@@ -55,8 +55,8 @@ def test_a_stack_learns_what_its_runs_learn_alone(small_config, new_run, train_a
     train_fleet(stacked, places=2, stacked=True)
     for run, (letters, seed) in zip(stacked, RUNS, strict=True):
         alone = train_alone(new_run(small_config, letters, seed))
-        # Sums are rounded otherwise: the first episodes agree closely, later ones drift apart.
-        for ours, theirs in zip(run.summaries[:2], alone.summaries[:2], strict=True):
+        # Sums are rounded otherwise, and small differences grow from step to step.
+        for ours, theirs in zip(run.summaries, alone.summaries, strict=True):
             assert ours.episode_return == pytest.approx(theirs.episode_return, rel=1e-3)
             assert ours.updates == theirs.updates
         for name, array in alone.trainer.agent.actor_parameters.arrays.items():
