@@ -15,6 +15,8 @@ from hexapod_doe.replays.rescoring import recorded_config, rescore
 from hexapod_doe.rescore import main
 from hexapod_sim.task import DIVERGED, TaskConfig
 
+from hexapod_doe import shadow
+
 SAMPLE = Path(__file__).resolve().parents[3] / 'bags' / 'sample'
 SHORT = TaskConfig(time_limit_steps=40)
 # Values that change every term.
@@ -139,3 +141,30 @@ def test_an_unknown_key_of_the_reward_file_is_named(tmp_path, capsys):
     with pytest.raises(SystemExit):
         main([str(SAMPLE), '--task', str(tmp_path / 'wrong.yaml')])
     assert "wrong.yaml: unknown key 'task.alive'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ('command', 'fault'),
+    [('rescore', 'zeros')]
+    + [(c, f) for c in ('rescore', 'shadow') for f in ('truncated', 'foreign', 'empty')],
+)
+def test_an_unusable_bag_is_one_line(record, capsys, command, fault):
+    bag, _ = record(SHORT)
+    (file,) = bag.glob('*.mcap')
+    content = bytearray(file.read_bytes())
+    if fault == 'truncated':
+        file.write_bytes(content[:-100])
+    elif fault == 'foreign':
+        (bag / 'metadata.yaml').write_text('rosbag2_bagfile_information: {storage_identifier: x}')
+    elif fault == 'empty':
+        file.write_bytes(b'')
+    else:
+        start = len(content) // 8
+        file.write_bytes(content[:start] + bytes(2 * start) + content[3 * start :])
+    main_of = {'rescore': main, 'shadow': shadow.main}[command]
+    with pytest.raises(SystemExit) as end:
+        main_of([str(bag), *(['--checkpoint', 'none.pt'] if command == 'shadow' else [])])
+    assert end.value.code == 2
+    *_, line = capsys.readouterr().err.splitlines()
+    assert line.startswith(f'{command}: error: bag {bag}: ')
+    assert 'expected' in line
