@@ -1,0 +1,77 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Throughput of a campaign with one local worker and with two: learner, bags and manager included.
+
+Run: `python tests/benchmarks/bench_campaign.py`. The time is from the first bag's beginning to the
+last bag's end, so that starting workers does not count, but everything between two runs does.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+from hexapod_doe.campaigns.folder import read_progress
+from hexapod_doe.campaigns.progress import State
+from rich.console import Console
+from rich.progress import Progress
+from rich.table import Table
+
+ROWS, EPISODES, STEPS = 8, 3, 300
+TARGET = 1.8
+DOMAIN = '97'
+PLAN = 'ros2 run hexapod_doe plan --design eighth --replicates 1 --seed 1 --out {plan}'
+MANAGER = (
+    'ros2 run hexapod_doe manager_node --ros-args -p plan:={plan} -p episodes:={episodes} '
+    '-p record_every:=0 -p config:={config} -p local_workers:={workers}'
+)
+
+
+def make_plan(directory: Path) -> Path:
+    """Write a plan of a few rows of the article's eighth fraction."""
+    plan = directory / 'plan.csv'
+    subprocess.run(PLAN.format(plan=plan).split(), check=True, stdout=subprocess.DEVNULL)
+    header, *rows = plan.read_text().splitlines()
+    order = header.split(',').index('RunOrder')
+    first = [row for row in rows if int(row.split(',')[order]) <= ROWS]
+    plan.write_text('\n'.join([header, *first]) + '\n')
+    return plan
+
+
+def episodes_per_second(directory: Path, workers: int) -> float:
+    """Run the campaign and return its throughput."""
+    plan, config = make_plan(directory), directory / 'short.yaml'
+    config.write_text(f'task: {{time_limit_steps: {STEPS}}}\n')
+    line = MANAGER.format(plan=plan, episodes=EPISODES, config=config, workers=workers)
+    manager = subprocess.Popen(line.split(), stdout=subprocess.DEVNULL)
+    began = None
+    while manager.poll() is None:
+        if began is None and any((directory / 'runs').glob('*.partial')):
+            began = time.time()
+        time.sleep(0.02)
+    assert manager.returncode == 0, f'the campaign ended with status {manager.returncode}'
+    assert len(read_progress(directory).having(State.DONE)) == ROWS
+    ended = max(file.stat().st_mtime for file in directory.glob('runs/*/metadata.yaml'))
+    return ROWS * EPISODES / (ended - began)
+
+
+def main() -> None:
+    """Print both rates and their ratio."""
+    os.environ['ROS_DOMAIN_ID'] = DOMAIN
+    rates = {}
+    with Progress(transient=True) as progress:
+        for workers in progress.track((1, 2), description='campaigns'):
+            with tempfile.TemporaryDirectory() as name:
+                rates[workers] = episodes_per_second(Path(name), workers)
+    table = Table('local workers', 'episodes/s', 'times one worker', 'target')
+    table.add_row('1', f'{rates[1]:.2f}', '', '')
+    table.add_row('2', f'{rates[2]:.2f}', f'{rates[2] / rates[1]:.2f}', f'{TARGET}')
+    Console().print(table)
+
+
+if __name__ == '__main__':
+    main()
