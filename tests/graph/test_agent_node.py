@@ -129,8 +129,8 @@ class Faulty(SimNode):
 
     def __init__(self, topic: str, spoil) -> None:
         super().__init__()
-        for sensor, _, publisher in self._sensors:
-            if sensor.name == topic:
+        for publisher in self.publishers:
+            if publisher.topic_name == f'/{topic}':
                 publisher.publish = compose(publisher.publish, spoil)
 
 
@@ -175,8 +175,8 @@ def test_a_silent_topic_ends_the_run_by_name(graph, short: str) -> None:
     agent = AgentNode()
     agent.timeout_s = 1.0
     graph.add(SimNode(), CpgNode(), agent)
-    for sensor, _, publisher in graph.nodes[1]._sensors:
-        if sensor.name == 'body/height':
+    for publisher in graph.nodes[1].publishers:
+        if publisher.topic_name == '/body/height':
             publisher.publish = lambda message: None
     goal = TrainRun.Goal(run_id='r', observations='CE', seed=1, episodes=1, config=short)
     response = graph.train(goal)

@@ -54,6 +54,12 @@ def test_every_sensor_topic_is_an_argument(processes, topic: str) -> None:
     assert all(f'{name}:={name}' in play.command for name in others)
 
 
+def test_a_drivers_own_frame_is_an_argument(processes) -> None:
+    play = processes('robot.launch.xml', frames='imu/data=bno055 body/height=tof')['play']
+    assert 'frames: imu/data=bno055 body/height=tof' in parameters(play)
+    assert "frames: ''" in parameters(processes('robot.launch.xml')['play'])
+
+
 def test_the_servos_topic_is_an_argument(processes) -> None:
     cpg = processes('robot.launch.xml', joint_trajectory='/servos/goal')['cpg']
     assert 'joint_trajectory:=/servos/goal' in cpg.command

@@ -174,6 +174,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
             if options.checkpoint is None:
                 trainer = Trainer(ObservationSpec(options.observations), AgentConfig.load(), 1)
                 checkpoint.save(agent, trainer, to_resume=False)
+            checkpoint.load(agent)  # what is wrong with it is better said before anything starts
             heard = measure(options.seconds, agent.resolve(), directory)
         except (ValueError, ReportError) as error:
             parser.error(str(error))
