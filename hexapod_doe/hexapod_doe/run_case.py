@@ -26,7 +26,7 @@ from hexapod_doe.designs.plan_file import PlanError
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Return 0 if the row is done, 1 if it is not, 2 if the plan has no such row."""
-    args = _parser().parse_args(arguments)
+    args = parser().parse_args(arguments)
     try:
         plan = place_plan(args.plan, args.out)
         row = _row(plan, args.row)
@@ -77,26 +77,27 @@ def _row(plan: Path, number: int) -> Row:
     return rows[number]
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog='run_case', description=__doc__)
-    parser.add_argument('--plan', type=Path, required=True, help='plan.csv of the campaign')
-    parser.add_argument('--row', type=int, required=True, help='StdOrder of the row')
-    parser.add_argument('--out', type=Path, help="the campaign's folder; default that of the plan")
-    parser.add_argument('--hyperparameters', type=Path, help='changes to article.yaml')
-    parser.add_argument('--episodes', type=_count, default=1000, help='default %(default)s')
-    parser.add_argument(
+def parser() -> argparse.ArgumentParser:
+    """Return what understands the command line."""
+    made = argparse.ArgumentParser(prog='run_case', description=__doc__)
+    made.add_argument('--plan', type=Path, required=True, help='plan.csv of the campaign')
+    made.add_argument('--row', type=int, required=True, help='StdOrder of the row')
+    made.add_argument('--out', type=Path, help="the campaign's folder; default that of the plan")
+    made.add_argument('--hyperparameters', type=Path, help='changes to article.yaml')
+    made.add_argument('--episodes', type=_count, default=1000, help='default %(default)s')
+    made.add_argument(
         '--record-every',
         type=int,
         default=100,
         help='every how many episodes all topics are recorded; default %(default)s, 0 for never',
     )
-    parser.add_argument(
+    made.add_argument(
         '--stall',
         type=float,
         default=120.0,
         help='longest time without a sign of life, in seconds; default %(default)s',
     )
-    return parser
+    return made
 
 
 def _count(text: str) -> int:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from hexapod_doe.bags.rosbag2 import partial_path
+from hexapod_doe.campaigns.failures import FailureLog
 from hexapod_doe.campaigns.folder import read_progress
 from hexapod_doe.campaigns.progress import State
 from mcap.reader import make_reader
@@ -75,3 +76,14 @@ def test_done_runs_are_read_once(mixed, monkeypatch):
     after = read_progress(mixed.directory, before.runs)
     assert after.runs['r4'] is before.runs['r4']
     assert after.runs['r3'] is not before.runs['r3']
+
+
+def test_a_row_failed_if_it_was_tried_in_vain_and_nobody_is_at_it(mixed):
+    failures = FailureLog(mixed.directory)
+    for run_id in ('r4', 'r3', 'r2', 'r1'):
+        failures.add(run_id, '/w1', 'first reason')
+        failures.add(run_id, '/w2', f'{run_id} again')
+    runs = read_progress(mixed.directory).runs
+    states = [run.state for run in runs.values()]
+    assert states == [State.DONE, State.RUNNING, State.FAILED, State.FAILED]
+    assert [run.reason for run in runs.values()] == ['', '', 'r2 again', 'r1 again']
