@@ -159,8 +159,7 @@ class ManagerNode(Node):
     async def _serve(self, worker: WorkerPeer) -> None:
         """Give a worker one row after another, for as long as it is there."""
         while not worker.gone:
-            present = [other.name for other in self._workers.values() if other.ready]
-            row = self._campaign.take(worker.name, present) if worker.ready else None
+            row = self._campaign.take(worker.name, self._workers) if worker.ready else None
             if row is None or self.exit_status is not None:
                 await sleep(self, _TICK_S)
                 continue
@@ -180,7 +179,7 @@ class ManagerNode(Node):
             self._campaign.release(row)
             await sleep(self, _BUSY_S)
         except WorkerLostError as error:
-            self._campaign.release(row)
+            self._campaign.release(row, tried=True)
             self._dashboard.end(worker.name, f'{row.run_id} is due again, {error}', done=False)
             self._local.kill(worker.name.strip('/'))
         else:

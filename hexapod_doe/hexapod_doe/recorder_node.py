@@ -5,16 +5,12 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from hexapod_interfaces.msg import EpisodeResult
-from hexapod_interfaces.srv import (
-    FinishRecording,
-    RecordEpisode,
-    SecureRecording,
-    StartRecording,
-)
+from hexapod_interfaces.srv import FinishRecording, RecordEpisode, SecureRecording, StartRecording
 from hexapod_node.conditions import until_true
 from hexapod_node.coroutine_service import create_coroutine_service
 from hexapod_node.diagnostics import Diagnostics, Health
@@ -23,6 +19,7 @@ from hexapod_node.qos import RECORD
 from hexapod_node.raw_topics import RawSubscriptions, subscribe_raw
 from hexapod_node.spin import run
 from hexapod_node.stamps import time_message, to_nanoseconds
+from hexapod_node.threads import in_thread
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
@@ -76,7 +73,7 @@ class RecorderNode(Node):
         self._samples = RawSubscriptions(self, self._on_sample)
         self._failure = ''
         """Why nothing more can be recorded of the run."""
-        self.create_service(StartRecording, '~/start', self._on_start)
+        create_coroutine_service(self, StartRecording, '~/start', self._on_start)
         create_coroutine_service(self, RecordEpisode, '~/episode', self._on_episode)
         create_coroutine_service(self, SecureRecording, '~/secure', self._on_secure)
         create_coroutine_service(self, FinishRecording, '~/finish', self._on_finish)
@@ -91,7 +88,7 @@ class RecorderNode(Node):
 
     # Services
 
-    def _on_start(
+    async def _on_start(
         self, request: StartRecording.Request, response: StartRecording.Response
     ) -> StartRecording.Response:
         """Open the bag of a run."""
@@ -103,7 +100,8 @@ class RecorderNode(Node):
             cut = set_aside(bag, request.takeover)
             if cut is not None:
                 self.get_logger().warning(f'an earlier recording was cut; it is now {cut}')
-            self._recording, response.kept, last_ns = open_recording(
+            begin = partial(
+                open_recording,
                 request.run_id,
                 bag,
                 {entry.key: entry.value for entry in request.metadata},
@@ -111,6 +109,7 @@ class RecorderNode(Node):
                 request.keep,
                 self.resolve_topic_name(RESULT_TOPIC),
             )
+            self._recording, response.kept, last_ns = await in_thread(self, begin)
         except BagError as error:
             response.message = str(error)
             return response
@@ -163,7 +162,8 @@ class RecorderNode(Node):
             self._recording = None
             metadata = {entry.key: entry.value for entry in request.metadata}
             response.messages = recording.messages
-            response.bag = str(recording.finish(request.episodes, metadata))
+            finish = partial(recording.finish, request.episodes, metadata)
+            response.bag = str(await in_thread(self, finish))
             response.success = True
         except BagError as error:
             response.message = str(error)

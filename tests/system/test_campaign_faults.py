@@ -73,6 +73,22 @@ def test_a_far_worker_that_hangs_gives_its_row_away_and_comes_back(
     campaign.assert_as_alone()
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize('victim', ['sim', 'cpg', 'recorder', 'agent'])
+def test_a_worker_that_loses_a_node_loses_its_row_to_another(
+    shell, campaign: ShortCampaign, victim: str
+) -> None:
+    line = 'ros2 run hexapod_{package} {node}_node --ros-args -r __ns:=/far'
+    packages = {'sim': 'sim', 'cpg': 'cpg', 'recorder': 'doe', 'agent': 'agent'}
+    far = {n: shell.start(line.format(package=p, node=n)) for n, p in packages.items()}
+    manager = campaign.start(workers=0, stall_timeout=15.0)
+    shell.until(lambda: results_of(campaign, 'far'), timeout_s=60.0)
+    far[victim].kill()
+    shell.start(WORKER.replace('far', 'near'))
+    assert manager.wait(200.0) == 0, shell.output()
+    campaign.assert_as_alone()
+
+
 @pytest.fixture
 def small_disk(tmp_path: Path):
     """Mount a file system of two megabytes and return its folder."""

@@ -83,7 +83,7 @@ class Campaign:
     reasons: dict[str, list[str]] = field(default_factory=dict)
     """Why each try of a run failed, by run id."""
     tried: dict[str, set[str]] = field(default_factory=dict)
-    """Workers on which a run failed, by run id."""
+    """Workers on which a run failed or got stuck, by run id."""
 
     @classmethod
     def open(cls, plan: Path, attempts: int = 3) -> Campaign:
@@ -150,9 +150,16 @@ class Campaign:
             self.tried.setdefault(row.run_id, set()).add(worker)
         self.reasons.setdefault(row.run_id, []).append(reason)
 
-    def release(self, row: Row) -> None:
-        """Take a row back from a worker that is gone, through no fault of the row."""
-        self.running.pop(row.run_id, None)
+    def release(self, row: Row, tried: bool = False) -> None:
+        """Take a row back from a worker, through no fault of the row.
+
+        Args:
+            row: that is due again.
+            tried: whether the worker was at fault, so that another should have the row next.
+        """
+        worker = self.running.pop(row.run_id, None)
+        if tried and worker is not None:
+            self.tried.setdefault(row.run_id, set()).add(worker)
 
     def check_writable(self) -> None:
         """Make sure that the folder takes what a run would write.

@@ -55,6 +55,14 @@ def test_failed_row_stays_with_a_worker_that_is_alone(campaign):
     assert taken(campaign, A, present=[A]) == 'case2'
 
 
+def test_row_of_a_worker_that_got_stuck_goes_to_another_and_counts_no_failure(campaign):
+    assert taken(campaign, A) == 'case1'
+    campaign.release(campaign.rows[0], tried=True)
+    assert taken(campaign, A) == 'case2'
+    assert taken(campaign, B) == 'case1'
+    assert campaign.reasons == {}
+
+
 def test_finished_means_that_every_row_is_done_or_failed(campaign):
     campaign.done = {'case1', 'case2'}
     assert taken(campaign, A) == 'case3'

@@ -1,0 +1,37 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Work that takes long, in a thread of its own, awaited by a coroutine of the node."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future
+from typing import TypeVar
+
+from rclpy.node import Node
+
+from hexapod_node.coroutines import sleep
+
+_POLL_S = 0.01
+Result = TypeVar('Result')
+
+
+async def in_thread(node: Node, work: Callable[[], Result]) -> Result:
+    """Return what some work returns, or raise what it raises; the node serves others meanwhile.
+
+    The thread does not keep the process alive: work is cut when the process ends.
+    """
+    done: Future[Result] = Future()
+    threading.Thread(target=_run, args=(work, done), daemon=True).start()
+    while not done.done():
+        await sleep(node, _POLL_S)
+    return done.result()
+
+
+def _run(work: Callable[[], Result], done: Future[Result]) -> None:
+    try:
+        done.set_result(work())
+    except BaseException as error:
+        done.set_exception(error)
