@@ -156,7 +156,7 @@ def test_row_of_another_process_is_left_to_it(arguments, tmp_path, capsys):
     with campaign_lock(tmp_path, shared=True), row_lock(row.bag):
         assert run_fleet.main(arguments(tmp_path, episodes=1)) == 1
     printed = capsys.readouterr().out
-    assert printed.count(f'run {row.run_id}: process') == 1
+    assert printed.count(f'{row.run_id} is left to the process') == 1
     assert '3 of 4 runs' in printed
     assert run_fleet.main(arguments(tmp_path, episodes=1)) == 0
 

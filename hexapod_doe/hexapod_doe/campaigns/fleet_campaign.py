@@ -12,6 +12,7 @@ from typing import Self
 from hexapod_agent.config import AgentConfig
 from hexapod_agent.summary import EpisodeSummary
 
+from hexapod_doe.bags.bag_state import is_complete
 from hexapod_doe.campaigns.campaign import Campaign, Row
 from hexapod_doe.campaigns.campaign_lock import row_lock
 from hexapod_doe.campaigns.dashboard import Dashboard
@@ -57,9 +58,13 @@ class FleetCampaign:
         """
         elsewhere = []
         while (row := self._campaign.take(_NAME)) is not None:
-            if self._lock(row):
+            if not self._lock(row):
+                elsewhere.append(row)
+            elif is_complete(row.bag):  # another process finished it just now
+                self._locks.pop(row.run_id).close()
+                self._campaign.complete(row)
+            else:
                 break
-            elsewhere.append(row)
         for each in elsewhere:  # due again, should that process leave it
             self._campaign.release(each)
         if row is None:
@@ -73,10 +78,10 @@ class FleetCampaign:
         lock = ExitStack()
         try:
             lock.enter_context(row_lock(row.bag))
-        except CampaignError as error:
+        except CampaignError:  # of the folder nothing is wrong: the fleet has begun in it
             if row.run_id not in self._elsewhere:
                 self._elsewhere.add(row.run_id)
-                self.log(str(error))
+                self.log(f'{row.run_id} is left to the process that is at it')
             return False
         self._locks[row.run_id] = lock
         return True
