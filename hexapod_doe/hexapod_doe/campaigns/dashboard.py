@@ -83,7 +83,10 @@ class Dashboard:
 
     def end(self, worker: str, text: str, done: bool) -> None:
         """Count a finished run, or take back one that failed."""
-        run = self._current.pop(worker)
+        run = self._current.pop(worker, None)
+        if run is None:  # it was lost before it began
+            self.log(text)
+            return
         if done:
             run = read_row(self._bags[run.run_id], run.run_id, run.observations)
             self.progress.runs[run.run_id] = run

@@ -69,6 +69,12 @@ def test_a_row_that_is_given_up_is_due_again(shown):
     assert shown.dashboard.progress.episodes == 5
 
 
+def test_a_worker_that_is_lost_before_its_run_begins_is_one_line(shown):
+    shown.dashboard.end('/w9', '/w9 is gone', done=False)
+    assert '/w9 is gone' in shown.text.getvalue()
+    assert shown.dashboard.progress.episodes == 5
+
+
 def test_a_resumed_run_begins_where_it_was(shown):
     shown.dashboard.begin('/w1', 'r3', 'B')
     shown.dashboard.episode('/w1', 'r3', 3, 1.0)
