@@ -15,6 +15,9 @@ Kind = Literal['vector', 'quaternion', 'switch']
 """Numbers that errors are added to, an orientation x y z w that they turn, or on and off."""
 
 _MOST_NUMBERS = 18  # of one reading: the joints
+_MOST_STEPS = 2.0**52
+# A unit quaternion has a number of at least this size, so that its rounding is not zero.
+_COARSEST_ORIENTATION = 0.5
 
 
 @dataclass(frozen=True)
@@ -55,7 +58,15 @@ class Degradation:
             kind: what they do to the numbers.
             seed: of all that is random.
             stream: tells apart readings that share a seed.
+
+        Raises:
+            ValueError: the steps of an orientation are too coarse to be one.
         """
+        if kind == 'quaternion' and distortion.step > _COARSEST_ORIENTATION:
+            raise ValueError(
+                f'step {distortion.step}: expected at most {_COARSEST_ORIENTATION} for an '
+                'orientation'
+            )
         self._distortion = distortion
         self._kind = kind
         self._key = np.array([seed, stream], dtype=np.uint64)
@@ -89,8 +100,13 @@ class Degradation:
         return self._bias[:size] + self._distortion.noise * sample
 
     def _quantise(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        step = self._distortion.step
-        return step * np.round(values / step) if step else values
+        if not self._distortion.step:
+            return values
+        with np.errstate(over='ignore'):
+            steps = values / self._distortion.step
+        # Beyond that many steps, neighbouring doubles are further apart than the steps.
+        fine = np.abs(steps) >= _MOST_STEPS
+        return np.where(fine, values, self._distortion.step * np.round(steps))
 
     def _generator(self, stamp_ns: int, constant: bool = False) -> np.random.Generator:
         """Return the generator of a sample; the low words of the counter are its own draws."""

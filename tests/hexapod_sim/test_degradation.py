@@ -10,7 +10,7 @@ import math
 import numpy as np
 import pytest
 from hexapod_sim.degradation import Degradation, Distortion, from_rotation, multiply
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 STAMPS = [25_000_000 * step for step in range(2000)]
@@ -71,7 +71,8 @@ def test_seeds_and_streams_are_independent(other: dict[str, int]) -> None:
     assert abs(np.corrcoef(one.ravel(), two.ravel())[0, 1]) < 0.04  # four standard errors
 
 
-@given(st.integers(0, 1000), st.floats(0.0, 0.5), st.floats(0.0, 0.5), st.floats(0.0, 0.2))
+@settings(max_examples=50)
+@given(st.integers(0, 1000), st.floats(0.0, 0.5), st.floats(0.0, 0.5), st.floats(0.0, 0.5))
 def test_orientations_stay_unit_quaternions(seed, noise, bias, step) -> None:
     truth = np.array([0.1, -0.2, 0.3, math.sqrt(1.0 - 0.14)])
     device = Degradation(Distortion(noise, bias, step), 'quaternion', seed)
@@ -114,3 +115,8 @@ def test_a_quarter_turn_about_z() -> None:
 def test_a_senseless_error_is_refused_by_name(wrong: dict[str, float]) -> None:
     with pytest.raises(ValueError, match=f'{next(iter(wrong))} .*expected a number'):
         Distortion(**wrong)
+
+
+def test_an_orientation_of_too_coarse_steps_is_refused() -> None:
+    with pytest.raises(ValueError, match=r'expected at most 0\.5 for an orientation'):
+        Degradation(Distortion(step=0.6), 'quaternion', 1)
