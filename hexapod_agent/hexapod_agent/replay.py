@@ -138,9 +138,7 @@ class ReplayBuffer:
             (batch.action, self._action, rows),
             (batch.next_observation, self._observation, last),
         ):
-            torch.index_select(
-                torch.from_numpy(source), 0, torch.from_numpy(index), out=out[0]
-            )
+            torch.index_select(torch.from_numpy(source), 0, torch.from_numpy(index), out=out[0])
         batch.reward[0, :, 0] = torch.from_numpy(reward)
         batch.bootstrap[0, :, 0] = torch.from_numpy(bootstrap)
 
