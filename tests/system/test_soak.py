@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -64,7 +64,10 @@ class Client:
         assert self._client.wait_for_server(30.0)
         handle = self._result(self._client.send_goal_async(goal, self._on_feedback))
         assert handle.accepted
-        return self._result(handle.get_result_async()).result
+        result = self._result(handle.get_result_async()).result
+        # With the last episode the worker was closing bag and checkpoint: look once they are.
+        self.samples[-1] = replace(self.samples[-1], files=Sample.of(self._pid).files)
+        return result
 
     def close(self) -> None:
         self._client.destroy()
