@@ -6,7 +6,7 @@
 import os
 import socket
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import pytest
 from hypothesis import settings
@@ -70,3 +70,15 @@ def own_domain() -> Iterator[int]:
     yield domain
     os.environ['ROS_DOMAIN_ID'] = before
     holder.close()
+
+
+@pytest.fixture
+def told() -> Callable[[str], list[str]]:
+    """Yield what splits an output into the lines that a node itself has written.
+
+    Fast DDS complains on the terminal about shared memory that killed processes left behind; it
+    then goes on without.
+    """
+    return lambda output: [
+        line for line in output.strip().splitlines() if 'RTPS_TRANSPORT_SHM' not in line
+    ]
