@@ -24,8 +24,12 @@ from hexapod_doe.bags.run_bag import RUN_RECORD
 from hexapod_doe.errors import BagError
 
 _YAML_LOADER = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
-DAMAGE = (McapError, ZstdError, struct.error, ValueError, OSError)
-"""What reading a damaged MCAP file raises; failed checksums are ValueErrors."""
+DAMAGE = (
+    McapError, ZstdError, struct.error, ValueError, OSError,
+    LookupError, OverflowError, MemoryError,
+)  # fmt: skip
+"""What reading a damaged MCAP file raises: checksums are ValueErrors, a damaged index leads to
+channels that do not exist (LookupError), or to lengths beyond all memory (the last two)."""
 
 
 class RawMessage(NamedTuple):
