@@ -5,8 +5,9 @@
 
 from __future__ import annotations
 
+import functools
 from array import array
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,7 +21,7 @@ from hexapod_interfaces.msg import CpgCommand, EpisodeResult, StepOutcome
 from hexapod_node.conditions import until_true
 from hexapod_node.coroutines import STEADY
 from hexapod_node.lock_step import LockStep
-from hexapod_node.matching import unheard
+from hexapod_node.matching import listening_nodes, unheard
 from hexapod_node.stamps import time_message
 from hexapod_node.subscriptions import subscribed_topics
 from hexapod_sim.robot import CONTROL_PERIOD_NS
@@ -164,7 +165,7 @@ class GraphRun:
         self._lock_step.counts.reset()
         self._agent.begin_episode(episode)
         self._action = np.zeros(ACTION_SIZE, dtype=np.float32)
-        listeners = self._listeners(sampled)
+        listeners = functools.partial(self._listeners, sampled)
         await self._until_heard(listeners)
         seed = episode_seed(self._goal.seed, episode)
         start_ns = await peers.begin_episode(seed, listeners, self._last_ns + CONTROL_PERIOD_NS)
@@ -215,15 +216,21 @@ class GraphRun:
         if sampled:
             for topic in self._recorded_topics():
                 listeners[topic] = listeners.get(topic, 0) + 1
-        return listeners
+        # Whoever else listens must not be taken for one of them.
+        return {
+            topic: max(least, listening_nodes(self._node, topic))
+            for topic, least in listeners.items()
+        }
 
-    async def _until_heard(self, listeners: Mapping[str, int]) -> None:
+    async def _until_heard(self, listeners: Callable[[], Mapping[str, int]]) -> None:
         """Wait until the agent's own topics are matched."""
         node = self._node
-        publishers = [node.command_publisher, node.result_publisher]
-        if not await until_true(node, lambda: not unheard(publishers, listeners), node.timeout_s):
-            reason = unheard(publishers, listeners)
-            raise PeerError(f'{reason} after {node.timeout_s:g} s, expected a running node')
+
+        def reason() -> str:
+            return unheard([node.command_publisher, node.result_publisher], listeners())
+
+        if not await until_true(node, lambda: not reason(), node.timeout_s):
+            raise PeerError(f'{reason()} after {node.timeout_s:g} s, expected a running node')
 
     def _recorded_topics(self) -> list[str]:
         return [self._node.resolve_topic_name(t) for t in (*_SENSOR_TOPICS, *_PROTOCOL_TOPICS)]

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from diagnostic_msgs.msg import KeyValue
@@ -69,18 +69,19 @@ class Peers:
         await self._repeat_until_answered(self._greet, ListParameters.Request())
 
     async def begin_episode(
-        self, seed: int, subscriptions: Mapping[str, int], not_before_ns: int = 0
+        self, seed: int, listeners: Callable[[], Mapping[str, int]], not_before_ns: int = 0
     ) -> int:
-        """Reset sim and pattern generator; return the stamp of the first period, ns."""
-        request = ResetEpisode.Request(
-            seed=seed,
-            start=time_message(not_before_ns),
-            topics=list(subscriptions),
-            subscriptions=list(subscriptions.values()),
-        )
-        response = await self._reset_when_matched('sim', request)
+        """Reset sim and pattern generator; return the stamp of the first period, ns.
+
+        Args:
+            seed: The episode's.
+            listeners: Tells the least number of subscriptions by fully qualified topic, now.
+            not_before_ns: The first period is no earlier.
+        """
+        request = ResetEpisode.Request(seed=seed, start=time_message(not_before_ns))
+        response = await self._reset_when_matched('sim', request, listeners)
         request.start = response.start
-        await self._reset_when_matched('cpg', request)
+        await self._reset_when_matched('cpg', request, listeners)
         return to_nanoseconds(response.start)
 
     async def start_recording(
@@ -123,10 +124,18 @@ class Peers:
         response = await self._ask_the_disk(self._finish, request)
         return str(response.bag)
 
-    async def _reset_when_matched(self, peer: str, request: ResetEpisode.Request) -> Any:
+    async def _reset_when_matched(
+        self,
+        peer: str,
+        request: ResetEpisode.Request,
+        listeners: Callable[[], Mapping[str, int]],
+    ) -> Any:
         """Repeat the reset until the peer's topics are matched."""
         deadline = time.monotonic() + self._timeout_s
         while True:
+            wanted = listeners()
+            request.topics = list(wanted)
+            request.subscriptions = list(wanted.values())
             response = await call(self._node, self._reset[peer], request, self._timeout_s)
             if response.success:
                 return response

@@ -74,7 +74,7 @@ def graph(ros_args: list[str]) -> Iterator[Graph]:
     made = Graph()
     made.add(Node('test'))
     yield made
+    made.executor.shutdown()
     for node in reversed(made.nodes):
         node.destroy_node()
-    made.executor.shutdown()
     rclpy.shutdown()

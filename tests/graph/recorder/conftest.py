@@ -142,9 +142,9 @@ class Worker:
     def close(self) -> None:
         """End it; once more does nothing."""
         if rclpy.ok():
+            self.executor.shutdown()
             for node in (self.recorder, self.node):
                 node.destroy_node()
-            self.executor.shutdown()
             rclpy.shutdown()
 
 

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from rclpy.node import Node
 from rclpy.publisher import Publisher
+from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
 
 
 def unheard(publishers: Iterable[Publisher], listeners: Mapping[str, int]) -> str:
@@ -25,3 +27,24 @@ def unheard(publishers: Iterable[Publisher], listeners: Mapping[str, int]) -> st
         if matched.get(topic, least) < least:
             return f'{topic} has {matched[topic]} of {least} subscriptions'
     return ''
+
+
+def listening_nodes(node: Node, topic: str) -> int:
+    """Return how many nodes are known to have a subscription that is served by a publisher.
+
+    A number of matched subscriptions does not say whose they are. Where strangers listen too,
+    `unheard` is sure of a certain listener only if asked for as many as there are.
+    Nodes are counted by name, as one that was killed is known for some time beside its successor.
+    """
+    offers = [publisher.qos_profile for publisher in node.get_publishers_info_by_topic(topic)]
+    return len(
+        {
+            (listener.node_namespace, listener.node_name)
+            for listener in node.get_subscriptions_info_by_topic(topic)
+            if any(_served(offered, listener.qos_profile) for offered in offers)
+        }
+    )
+
+
+def _served(offered: QoSProfile, requested: QoSProfile) -> bool:
+    return qos_check_compatible(offered, requested)[0] != QoSCompatibility.ERROR
