@@ -12,6 +12,7 @@ from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import CpgCommand, EpisodeResult
 from hexapod_node.coroutines import CoroutineActionServer, sleep
 from hexapod_node.diagnostics import Diagnostics, Health
+from hexapod_node.intra_process import LockStepPublisher
 from hexapod_node.parameters import Parameter, declare
 from hexapod_node.qos import LOCK_STEP
 from hexapod_node.spin import run
@@ -50,7 +51,7 @@ class AgentNode(Node):
         super().__init__('agent')
         declare(self, PARAMETERS)
         self.timeout_s = float(self.get_parameter('timeout').value)
-        self.command_publisher = self.create_publisher(CpgCommand, 'cpg/command', LOCK_STEP)
+        self.command_publisher = LockStepPublisher(self, CpgCommand, 'cpg/command')
         self.result_publisher = self.create_publisher(EpisodeResult, 'episode_result', LOCK_STEP)
         self.peers = Peers(self, self.timeout_s)
         self.make_trainer = make_trainer

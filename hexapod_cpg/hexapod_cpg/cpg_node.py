@@ -13,11 +13,12 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from hexapod_interfaces.msg import CpgCommand, CpgState
 from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.diagnostics import Diagnostics, Health
+from hexapod_node.intra_process import LockStepPublisher, LockStepSubscription
 from hexapod_node.invalid_message import fault_kind
 from hexapod_node.matching import unheard
 from hexapod_node.newest import Input, NewestSamples
 from hexapod_node.parameters import ConfigParameters, Parameter, declare
-from hexapod_node.qos import COMMAND, LOCK_STEP
+from hexapod_node.qos import COMMAND
 from hexapod_node.spin import run
 from hexapod_node.stamp_gate import DuePeriod
 from hexapod_node.stamps import time_message, to_nanoseconds
@@ -26,6 +27,7 @@ from hexapod_node.ticker import Tick, Ticker
 from hexapod_sim.robot import CONTROL_PERIOD_NS, NO_LOAD_SPEED
 from numpy.typing import NDArray
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.publisher import Publisher
 from trajectory_msgs.msg import JointTrajectory
 
 from hexapod_cpg.joint_guard import JointGuard
@@ -76,11 +78,8 @@ class CpgNode(LifecycleNode):
         self._trajectory = new_trajectory()
         self._state = CpgState()
         self._real_time = value['sync'] == REALTIME
-        qos = COMMAND if self._real_time else LOCK_STEP
-        self._trajectory_publisher = self.create_publisher(
-            JointTrajectory, 'joint_trajectory', qos
-        )
-        self._state_publisher = self.create_publisher(CpgState, 'cpg/state', qos)
+        self._trajectory_publisher = self._publisher(JointTrajectory, 'joint_trajectory')
+        self._state_publisher = self._publisher(CpgState, 'cpg/state')
         self._due = DuePeriod(CONTROL_PERIOD_NS)
         self._samples = NewestSamples(self, {})
         self._ticker: Ticker | None = None
@@ -88,7 +87,7 @@ class CpgNode(LifecycleNode):
             wanted = Input(CpgCommand, round(value['max_age'] * 1e9), command_from_message)
             self._samples = NewestSamples(self, {'cpg/command': wanted})
         else:
-            self.create_subscription(CpgCommand, 'cpg/command', self._on_command, LOCK_STEP)
+            LockStepSubscription(self, CpgCommand, 'cpg/command', self._on_command)
             self.create_service(ResetEpisode, '~/reset', self._on_reset)
         Diagnostics(self, self._health)
         if value['autostart']:
@@ -160,9 +159,14 @@ class CpgNode(LifecycleNode):
             self._rejected[fault_kind(error)] += 1
             self.get_logger().error(f'{error}; the period is not played')
             return
-        self._publish_trajectory(targets, stamp_ns)
         self._due.start(stamp_ns + CONTROL_PERIOD_NS)
+        self._publish_trajectory(targets, stamp_ns)
         self._publish_state(stamp_ns + CONTROL_PERIOD_NS)
+
+    def _publisher(self, kind: type, topic: str) -> Publisher | LockStepPublisher:
+        if self._real_time:
+            return self.create_publisher(kind, topic, COMMAND)
+        return LockStepPublisher(self, kind, topic)
 
     def _play(self, message: CpgCommand) -> NDArray[np.float64]:
         if not self._active:

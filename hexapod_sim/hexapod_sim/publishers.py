@@ -9,7 +9,7 @@ from array import array
 from typing import TYPE_CHECKING
 
 from hexapod_interfaces.msg import LineOffset, StepOutcome
-from hexapod_node.qos import LOCK_STEP
+from hexapod_node.intra_process import LockStepPublisher
 from hexapod_node.stamps import time_message
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
@@ -21,7 +21,6 @@ from hexapod_sim.task import LineTask, Outcome
 
 if TYPE_CHECKING:
     from rclpy.node import Node
-    from rclpy.publisher import Publisher
 
 
 class SimPublishers:
@@ -36,20 +35,20 @@ class SimPublishers:
             (
                 sensor,
                 sensor.new(),
-                node.create_publisher(sensor.message_type, sensor.name, LOCK_STEP),
+                LockStepPublisher(node, sensor.message_type, sensor.name),
             )
             for sensor in SENSOR_TOPICS
         ]
         self._line_offset = LineOffset()
         self._line_offset.header.frame_id = ODOM_FRAME
-        self._line_offset_publisher = node.create_publisher(LineOffset, 'line_offset', LOCK_STEP)
+        self._line_offset_publisher = LockStepPublisher(node, LineOffset, 'line_offset')
         self._outcome = StepOutcome()
-        self._outcome_publisher = node.create_publisher(StepOutcome, 'step_outcome', LOCK_STEP)
+        self._outcome_publisher = LockStepPublisher(node, StepOutcome, 'step_outcome')
         self._odometry = new_odometry()
-        self._odometry_publisher = node.create_publisher(Odometry, 'odom', LOCK_STEP)
+        self._odometry_publisher = LockStepPublisher(node, Odometry, 'odom')
         # Relative: in the root namespace this is /clock, and workers side by side do not clash.
-        self._clock_publisher = node.create_publisher(Clock, 'clock', LOCK_STEP)
-        self.all: list[Publisher] = [
+        self._clock_publisher = LockStepPublisher(node, Clock, 'clock')
+        self.all: list[LockStepPublisher] = [
             *(publisher for _, _, publisher in self._sensors),
             self._line_offset_publisher,
             self._outcome_publisher,

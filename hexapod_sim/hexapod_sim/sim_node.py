@@ -11,10 +11,10 @@ from collections.abc import Sequence
 from diagnostic_msgs.msg import DiagnosticStatus
 from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.diagnostics import Diagnostics, Health
+from hexapod_node.intra_process import LockStepSubscription
 from hexapod_node.invalid_message import fault_kind
 from hexapod_node.matching import unheard
 from hexapod_node.parameters import ConfigParameters, Parameter, declare
-from hexapod_node.qos import LOCK_STEP
 from hexapod_node.spin import run
 from hexapod_node.stamp_gate import DuePeriod
 from hexapod_node.stamps import time_message, to_nanoseconds
@@ -67,8 +67,8 @@ class SimNode(Node):
         if value['sync'] == REALTIME:
             self._real_time = RealTime(self, self._task, self._config.get(), self._publish)
         else:
-            self.create_subscription(
-                JointTrajectory, 'joint_trajectory', self._on_joint_trajectory, LOCK_STEP
+            LockStepSubscription(
+                self, JointTrajectory, 'joint_trajectory', self._on_joint_trajectory
             )
         self.create_service(ResetEpisode, '~/reset', self._on_reset)
         Diagnostics(self, self._health)

@@ -129,7 +129,7 @@ class Faulty(SimNode):
 
     def __init__(self, topic: str, spoil) -> None:
         super().__init__()
-        for publisher in self.publishers:
+        for publisher in self._topics.all:
             if publisher.topic_name == f'/{topic}':
                 publisher.publish = compose(publisher.publish, spoil)
 
@@ -174,8 +174,9 @@ def test_a_wrong_message_ends_the_run_by_name(graph, short, topic, spoil, compla
 def test_a_silent_topic_ends_the_run_by_name(graph, short: str) -> None:
     agent = AgentNode()
     agent.timeout_s = 1.0
-    graph.add(SimNode(), CpgNode(), agent)
-    for publisher in graph.nodes[1].publishers:
+    sim = SimNode()
+    graph.add(sim, CpgNode(), agent)
+    for publisher in sim._topics.all:
         if publisher.topic_name == '/body/height':
             publisher.publish = lambda message: None
     goal = TrainRun.Goal(run_id='r', observations='CE', seed=1, episodes=1, config=short)

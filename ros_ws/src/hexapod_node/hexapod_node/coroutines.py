@@ -49,6 +49,14 @@ def start(coroutine: Coroutine[Future, None, Any]) -> Future:
     return done
 
 
+async def pause(node: Node) -> None:
+    """Let the executor serve what else is due."""
+    assert node.executor is not None, 'a coroutine runs in an executor'
+    turn = Future()
+    node.executor.create_task(turn.set_result, None)
+    await until(turn)
+
+
 async def sleep(node: Node, seconds: float) -> None:
     """Wait without blocking the executor, on a clock that goes on when simulated time stands."""
     done = Future()

@@ -13,8 +13,8 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.task import Future
 
-from hexapod_node.coroutines import STEADY, until
-from hexapod_node.qos import LOCK_STEP
+from hexapod_node.coroutines import STEADY, pause, until
+from hexapod_node.intra_process import LockStepSubscription
 from hexapod_node.stamp_gate import LockStepCounts, StampGate
 from hexapod_node.stamps import to_nanoseconds
 
@@ -40,7 +40,7 @@ class LockStep:
         self._arrival: Future | None = None
         self._waiting_since = 0.0
         self._subscriptions = [
-            node.create_subscription(kind, topic, partial(self._on_message, topic), LOCK_STEP)
+            LockStepSubscription(node, kind, topic, partial(self._on_message, topic))
             for topic, kind in topics.items()
         ]
         self._watch = node.create_timer(_WATCH_PERIOD_S, self._on_watch, clock=STEADY)
@@ -69,7 +69,9 @@ class LockStep:
         Raises:
             LockStepTimeoutError: a topic stayed silent; the text names it and its stamp.
         """
-        if not self._gate.complete:
+        if self._gate.complete:
+            await pause(self._node)  # nodes of this process answer at once; others have a turn
+        else:
             self._arrival = Future()
             self._waiting_since = time.monotonic()
             await until(self._arrival)
@@ -79,7 +81,7 @@ class LockStep:
         """Unsubscribe."""
         self._node.destroy_timer(self._watch)
         for subscription in self._subscriptions:
-            self._node.destroy_subscription(subscription)
+            subscription.destroy()
 
     def _on_message(self, topic: str, message: Any) -> None:
         complete = self._gate.offer(topic, to_nanoseconds(message.header.stamp), message)

@@ -6,13 +6,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import Protocol
 
 from rclpy.node import Node
-from rclpy.publisher import Publisher
 from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
 
 
-def unheard(publishers: Iterable[Publisher], listeners: Mapping[str, int]) -> str:
+class Heard(Protocol):
+    """A publisher that tells its topic and how many listen."""
+
+    @property
+    def topic_name(self) -> str:
+        """Fully qualified name."""
+
+    def get_subscription_count(self) -> int:
+        """Return the number of matched subscriptions."""
+
+
+def unheard(publishers: Iterable[Heard], listeners: Mapping[str, int]) -> str:
     """Say which of these publishers has fewer subscriptions than it must have, or ''.
 
     Args:

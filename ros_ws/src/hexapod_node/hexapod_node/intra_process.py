@@ -1,0 +1,80 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Hands lock-step samples to the other nodes of the same process, past the middleware.
+
+rclcpp does so for composed nodes; rclpy does not. Every endpoint is on the ROS graph as ever, and
+a topic that somebody outside of the process listens to goes through the middleware, to everybody.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable
+from typing import Any
+from weakref import WeakKeyDictionary
+
+from rclpy.context import Context
+from rclpy.exceptions import InvalidHandle
+from rclpy.node import Node
+
+from hexapod_node.qos import LOCK_STEP
+
+_subscriptions: WeakKeyDictionary[Context, defaultdict[str, list[LockStepSubscription]]]
+_subscriptions = WeakKeyDictionary()
+
+
+def _of_process(node: Node, topic: str) -> list[LockStepSubscription]:
+    """Return the subscriptions of a topic that the context's nodes have, to read or to change."""
+    return _subscriptions.setdefault(node.context, defaultdict(list))[topic]
+
+
+class LockStepSubscription:
+    """A subscription whose callback also gets what is published in the same process.
+
+    It is then called within the publisher's call, with the publisher's own message: what it keeps
+    of that message must not be needed after the next sample.
+    """
+
+    def __init__(
+        self, node: Node, kind: type, topic: str, callback: Callable[[Any], None]
+    ) -> None:
+        self.callback = callback
+        self._node = node
+        self._subscription = node.create_subscription(kind, topic, callback, LOCK_STEP)
+        self.topic_name: str = self._subscription.topic_name
+        _of_process(node, self.topic_name).append(self)
+
+    def destroy(self) -> None:
+        """Unsubscribe."""
+        _of_process(self._node, self.topic_name).remove(self)
+        self._node.destroy_subscription(self._subscription)
+
+    def is_matched(self) -> bool:
+        """Return whether it has a publisher; not so once its node is destroyed."""
+        try:
+            return bool(self._subscription.get_publisher_count())
+        except InvalidHandle:
+            return False
+
+
+class LockStepPublisher:
+    """A publisher that calls the subscriptions of its process where nobody else listens."""
+
+    def __init__(self, node: Node, kind: type, topic: str) -> None:
+        self._publisher = node.create_publisher(kind, topic, LOCK_STEP)
+        self.topic_name: str = self._publisher.topic_name
+        self._neighbours = _of_process(node, self.topic_name)
+
+    def get_subscription_count(self) -> int:
+        """Return the number of matched subscriptions, in this process or in any other."""
+        return int(self._publisher.get_subscription_count())
+
+    def publish(self, message: Any) -> None:
+        """Publish a sample; the message may be used again for the next one."""
+        matched = [each for each in self._neighbours if each.is_matched()]
+        if not matched or len(matched) < self.get_subscription_count():
+            self._publisher.publish(message)
+            return
+        for subscription in matched:
+            subscription.callback(message)
