@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 from geometry_msgs.msg import TwistStamped, Vector3, WrenchStamped
 from hexapod_interfaces.msg import CpgState, FootContacts, LineOffset, StepOutcome
+from hexapod_sim.joint_names import by_joint
 from hexapod_sim.robot import LEGS
 from hexapod_sim.sensors import foot_forces
 from hexapod_sim.task import Outcome
 from numpy.typing import NDArray
 from sensor_msgs.msg import Imu, JointState, Range
 
-from hexapod_agent.joint_names import joint_order
 from hexapod_agent.observation import Channel
 
 Reading = NDArray[np.float64]
@@ -69,17 +69,10 @@ def _joint_torques(messages: Mapping[str, JointState]) -> Readings:
 
 
 def _by_joint(topic: str, message: JointState, field: str) -> Reading:
-    values = np.array(getattr(message, field))
-    if len(values) != len(message.name):
-        raise ValueError(
-            f'{topic}: {field} has {len(values)} numbers for {len(message.name)} names, '
-            'expected one each'
-        )
     try:
-        order = joint_order(message.name)
+        return by_joint(message.name, getattr(message, field), field)
     except ValueError as error:
         raise ValueError(f'{topic}: {error}') from error
-    return values if order is None else values[order]
 
 
 def _cpg_state(messages: Mapping[str, CpgState]) -> Readings:

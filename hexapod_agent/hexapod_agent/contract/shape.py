@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from hexapod_sim.joint_names import joint_order
 from hexapod_sim.robot import JOINTS
 
 from hexapod_agent.contract.fields import JOINT_TYPE, Field, observed_fields
 from hexapod_agent.contract.finding import Finding
 from hexapod_agent.contract.subject import Subject
-from hexapod_agent.joint_names import joint_order
 
 
 def check_frame(subject: Subject) -> Iterator[Finding]:

@@ -8,13 +8,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from hexapod_sim.joint_names import joint_order
 from numpy.typing import NDArray
 
 from hexapod_agent.contract.evidence import Evidence, Sample, TopicEvidence
 from hexapod_agent.contract.fields import JOINT_TYPE
 from hexapod_agent.contract.finding import Finding, Level
 from hexapod_agent.contract.limits import Limits
-from hexapod_agent.joint_names import joint_order
 from hexapod_agent.observation import Channel
 
 

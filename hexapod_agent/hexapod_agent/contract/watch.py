@@ -15,6 +15,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from hexapod_sim.joint_names import joint_order
 from hexapod_sim.robot import CONTROL_PERIOD_NS, GRAVITY
 
 from hexapod_agent.contract import inertial, shape, units
@@ -29,7 +30,6 @@ from hexapod_agent.contract.fields import (
 from hexapod_agent.contract.finding import Finding
 from hexapod_agent.contract.limits import Limits
 from hexapod_agent.contract.subject import Subject
-from hexapod_agent.joint_names import joint_order
 from hexapod_agent.observation import Channel
 
 # A driver in another unit now and then sends numbers that would do in ours, and an accelerometer

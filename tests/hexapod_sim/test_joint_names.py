@@ -5,7 +5,7 @@
 
 import numpy as np
 import pytest
-from hexapod_agent.joint_names import joint_order, joint_prefix
+from hexapod_sim.joint_names import by_joint, joint_order, joint_prefix
 from hexapod_sim.robot import JOINTS
 from hypothesis import given
 from hypothesis import strategies as st
@@ -46,3 +46,13 @@ def test_plain_names_win_over_prefixed_ones() -> None:
 def test_a_missing_or_doubled_joint_is_named(names: tuple[str, ...], complaint: str) -> None:
     with pytest.raises(ValueError, match=complaint):
         joint_order(names)
+
+
+def test_numbers_come_in_our_order() -> None:
+    names = [*JOINTS[::-1], 'gripper']
+    np.testing.assert_array_equal(
+        by_joint(names, range(19), 'position'), np.arange(17.0, -1.0, -1.0)
+    )
+    np.testing.assert_array_equal(by_joint(JOINTS, range(18), 'position'), np.arange(18.0))
+    with pytest.raises(ValueError, match='position has 17 numbers for 18 names'):
+        by_joint(JOINTS, range(17), 'position')

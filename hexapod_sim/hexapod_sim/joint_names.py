@@ -9,10 +9,31 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
-from hexapod_sim.robot import JOINTS
 from numpy.typing import NDArray
 
+from hexapod_sim.robot import JOINTS
+
 _OURS = list(JOINTS)
+
+
+def by_joint(names: Sequence[str], values: Sequence[float], field: str) -> NDArray[np.float64]:
+    """Return a driver's numbers in the order of our joints (18,), matched by its names.
+
+    Args:
+        names: Of its joints.
+        values: One number for each name, in any unit.
+        field: What the numbers are, for texts.
+
+    Raises:
+        ValueError: a joint is missing or named twice, or names and numbers are not as many.
+    """
+    if len(values) != len(names):
+        raise ValueError(
+            f'{field} has {len(values)} numbers for {len(names)} names, expected one each'
+        )
+    order = joint_order(names)
+    numbers = np.array(values, dtype=np.float64)
+    return numbers if order is None else numbers[order]
 
 
 def joint_order(names: Sequence[str]) -> NDArray[np.intp] | None:
