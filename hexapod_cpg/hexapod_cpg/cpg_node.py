@@ -27,6 +27,7 @@ from hexapod_node.ticker import Tick, Ticker
 from hexapod_sim.robot import CONTROL_PERIOD_NS, NO_LOAD_SPEED
 from numpy.typing import NDArray
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.parameter import Parameter as RclpyParameter
 from rclpy.publisher import Publisher
 from trajectory_msgs.msg import JointTrajectory
 
@@ -35,11 +36,16 @@ from hexapod_cpg.locomotion import Locomotion, Motion
 from hexapod_cpg.mapping import Command
 from hexapod_cpg.messages import command_from_message, new_trajectory, targets_to_message
 from hexapod_cpg.oscillator import HopfConfig
+from hexapod_cpg.real_time import MEASURED, START_FROM, MeasuredStart
 
 PARAMETERS = (
     SYNC,
     Parameter('autostart', True, 'configure and activate the node when it starts'),
-    max_age('max_age', 'a command; the robot stops when the newest one is older'),
+    max_age(
+        'max_age',
+        'a command, and of the joints that the robot starts from; it stops when the newest '
+        'command is older',
+    ),
     phase(0.010),
     Parameter(
         'max_joint_rate',
@@ -51,10 +57,11 @@ PARAMETERS = (
     Parameter(
         'stop_rate',
         0.5,
-        'rate of every joint on its way back to the standing pose',
+        'rate of every joint on its way to the standing pose',
         unit='rad/s',
         range=(0.01, 10.0),
     ),
+    START_FROM,
 )
 
 
@@ -62,11 +69,17 @@ class CpgNode(LifecycleNode):
     """The pattern generator and its mapping to joint angles.
 
     Active, it plays commands. Inactive, it brings the robot to its standing pose and holds it.
-    Lock-step takes one control period per command; real time one per tick of the clock.
+    Lock-step takes one control period per command; real time one per tick of the clock, from the
+    measured joints on: it rises to the standing pose before it plays anything.
     """
 
-    def __init__(self) -> None:
-        super().__init__('cpg')
+    def __init__(self, parameter_overrides: Sequence[RclpyParameter] = ()) -> None:
+        """Declare, connect, and start by itself unless told otherwise.
+
+        Args:
+            parameter_overrides: values that stand in for the command line's.
+        """
+        super().__init__('cpg', parameter_overrides=list(parameter_overrides))
         declare(self, PARAMETERS)
         self._config = ConfigParameters(self, HopfConfig, 'cpg')
         value = {entry.name: self.get_parameter(entry.name).value for entry in PARAMETERS}
@@ -83,8 +96,10 @@ class CpgNode(LifecycleNode):
         self._due = DuePeriod(CONTROL_PERIOD_NS)
         self._samples = NewestSamples(self, {})
         self._ticker: Ticker | None = None
+        self._start: MeasuredStart | None = None
+        self._max_age_ns = round(value['max_age'] * 1e9)
         if self._real_time:
-            wanted = Input(CpgCommand, round(value['max_age'] * 1e9), command_from_message)
+            wanted = Input(CpgCommand, self._max_age_ns, command_from_message)
             self._samples = NewestSamples(self, {'cpg/command': wanted})
         else:
             LockStepSubscription(self, CpgCommand, 'cpg/command', self._on_command)
@@ -95,8 +110,12 @@ class CpgNode(LifecycleNode):
             self.trigger_activate()
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Begin to hold the standing pose."""
-        self._locomotion.stand(self._config.get())
+        """Begin to hold the standing pose, or to find out how far away it is."""
+        if self._real_time and self.get_parameter('start_from').value == MEASURED:
+            self._locomotion.wait(self._config.get())
+            self._start = MeasuredStart(self, self._max_age_ns)
+        else:
+            self._locomotion.stand(self._config.get())
         if self._real_time:
             phase_ns = round(self.get_parameter('phase').value * 1e9)
             self._ticker = Ticker(self, CONTROL_PERIOD_NS, self._on_tick, phase_ns)
@@ -114,7 +133,7 @@ class CpgNode(LifecycleNode):
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Leave the robot to itself, once it stands."""
-        if self._locomotion.motion is Motion.STOPPING:
+        if self._locomotion.motion in (Motion.RISING, Motion.STOPPING):
             self.get_logger().error('cleanup refused: the robot is on its way to stand')
             return TransitionCallbackReturn.FAILURE
         self._release()
@@ -128,6 +147,7 @@ class CpgNode(LifecycleNode):
     def _release(self) -> None:
         self._active = False
         self._due.stop()
+        self._drop_start()
         if self._ticker is not None:
             self._ticker.destroy()
             self._ticker = None
@@ -175,23 +195,42 @@ class CpgNode(LifecycleNode):
 
     def _on_tick(self, tick: Tick) -> None:
         """Advance one period with the newest command, or stop where there is none."""
-        newest = self._samples.take() if self._active else None
-        targets = self._walk(newest['cpg/command']) if newest else self._locomotion.stop()
-        self._publish_trajectory(targets, tick.stamp_ns)
+        if self._knows_the_joints():
+            newest = self._samples.take() if self._active else None
+            targets = self._walk(newest['cpg/command']) if newest else self._locomotion.stop()
+            self._publish_trajectory(targets, tick.stamp_ns)
         self._publish_state(tick.stamp_ns + CONTROL_PERIOD_NS)
+
+    def _knows_the_joints(self) -> bool:
+        """Return whether the robot may move; the first sample of its joints makes it rise."""
+        if self._start is None:
+            return True
+        pose = self._start.take()
+        if pose is None:
+            return False
+        self._locomotion.rise(pose)
+        self._drop_start()
+        return True
+
+    def _drop_start(self) -> None:
+        if self._start is not None:
+            self._start.destroy()
+            self._start = None
 
     def _walk(self, command: Command) -> NDArray[np.float64]:
         if self._locomotion.motion is Motion.STANDING:
             self._locomotion.restart(self._config.get())
-        if self._ticker is not None and not self._has_walked:
-            self._ticker.meter.restart()  # what counts is how the robot walks
-            self._has_walked = True
         try:
-            return self._locomotion.walk(command)
+            targets = self._locomotion.walk(command)
         except ValueError as error:
             self._rejected[fault_kind(error)] += 1
             self.get_logger().error(f'{error}; the robot stops', throttle_duration_sec=1.0)
             return self._locomotion.stop()
+        walks = self._locomotion.motion is Motion.WALKING
+        if walks and not self._has_walked and self._ticker is not None:
+            self._ticker.meter.restart()  # what counts is how the robot walks
+            self._has_walked = True
+        return targets
 
     def _publish_trajectory(self, targets: NDArray[np.float64], stamp_ns: int) -> None:
         targets_to_message(targets, self._trajectory)
@@ -216,10 +255,12 @@ class CpgNode(LifecycleNode):
         }
         if self._real_time:
             values |= self._samples.values()
+            values |= self._start.values() if self._start is not None else {}
             values |= self._ticker.meter.values() if self._ticker is not None else {}
             fault = self._samples.fault() if self._active else 'not active'
+            fault = self._start.fault() if self._start is not None else fault
             level = DiagnosticStatus.WARN if fault else DiagnosticStatus.OK
-            return level, fault or 'walking', values
+            return level, fault or str(self._locomotion.motion), values
         counts = vars(self._due.counts)
         if self._rejected.total() or any(counts.values()):
             return DiagnosticStatus.WARN, 'commands came that were not due', values | counts

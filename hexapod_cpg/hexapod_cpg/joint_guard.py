@@ -33,9 +33,9 @@ class JointGuard:
         self.beyond_rate = 0
         self._max_step = max_rate * _TARGET_PERIOD_S
 
-    def reset(self) -> None:
-        """Take the robot to stand."""
-        self.position = robot.NEUTRAL_POSE.copy()
+    def reset(self, pose: NDArray[np.float64] = robot.NEUTRAL_POSE) -> None:
+        """Take the robot to be in a pose (18,) [rad], or as near to it as the limits allow."""
+        self.position = np.clip(pose, robot.JOINT_LOWER, robot.JOINT_UPPER)
 
     def limit(self, targets: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return targets (SUBSTEPS, 18) within the joint limits; the good ones stay as they are.

@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Walks as commanded, and stops safely: slowly back to the standing pose."""
+"""Walks as commanded, begins and stops safely: slowly to the standing pose."""
 
 from __future__ import annotations
 
@@ -20,6 +20,10 @@ from hexapod_sim import robot
 class Motion(StrEnum):
     """What the legs do."""
 
+    WAITING = 'waiting'
+    """Nothing, for nobody knows where the joints are."""
+    RISING = 'rising'
+    """They go to the standing pose for the first time; commands are for later."""
     STANDING = 'standing'
     WALKING = 'walking'
     STOPPING = 'stopping'
@@ -40,7 +44,7 @@ class Locomotion:
         Args:
             config: Of the oscillators.
             guard: Of the joints.
-            stop_rate: Rate of every joint on its way back to the standing pose [rad/s].
+            stop_rate: Rate of every joint on its way to the standing pose [rad/s].
         """
         self.cpg = Cpg(config)
         self.guard = guard
@@ -57,6 +61,16 @@ class Locomotion:
         self.guard.reset()
         self.motion = Motion.STANDING
 
+    def wait(self, config: HopfConfig) -> None:
+        """Begin without knowing where the joints are: `rise` is to tell."""
+        self.restart(config)
+        self.motion = Motion.WAITING
+
+    def rise(self, pose: NDArray[np.float64]) -> None:
+        """Begin in a pose (18,) [rad] with the way to the standing pose."""
+        self.guard.reset(pose)
+        self.motion = Motion.RISING
+
     def play(self, command: Command) -> NDArray[np.float64]:
         """Advance one control period, within the joint limits; targets (SUBSTEPS, 18) [rad].
 
@@ -68,20 +82,30 @@ class Locomotion:
         return targets
 
     def walk(self, command: Command) -> NDArray[np.float64]:
-        """Advance one control period, within joint limits and rates.
+        """Advance one control period, within joint limits and rates; first of all rise.
 
         Raises:
             ValueError: The command is of no use; nothing has changed.
+            RuntimeError: Nobody has told where the joints are.
         """
+        if self.motion in (Motion.WAITING, Motion.RISING):
+            return self.stop()
         targets = self.guard.follow(self._advance(command))
         self.motion = Motion.WALKING
         return targets
 
     def stop(self) -> NDArray[np.float64]:
-        """Go on with the way back to the standing pose for one control period, or stand there."""
+        """Go on with the way to the standing pose for one control period, or stand there.
+
+        Raises:
+            RuntimeError: Nobody has told where the joints are.
+        """
+        if self.motion is Motion.WAITING:
+            raise RuntimeError('locomotion: expected rise() or stand() before the first motion')
+        on_the_way = Motion.RISING if self.motion is Motion.RISING else Motion.STOPPING
         targets = self.guard.approach(robot.NEUTRAL_POSE, self._stop_rate)
         stands = np.array_equal(self.guard.position, robot.NEUTRAL_POSE)
-        self.motion = Motion.STANDING if stands else Motion.STOPPING
+        self.motion = Motion.STANDING if stands else on_the_way
         return targets
 
     def _advance(self, command: Command) -> NDArray[np.float64]:

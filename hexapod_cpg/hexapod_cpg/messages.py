@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Commands, oscillator states and joint trajectories as ROS messages."""
+"""Commands, joint states and joint trajectories as ROS messages."""
 
 from __future__ import annotations
 
@@ -11,13 +11,24 @@ import numpy as np
 from hexapod_interfaces.msg import CpgCommand
 from hexapod_node.invalid_message import InvalidMessageError
 from hexapod_node.stamps import duration_message
-from hexapod_sim.robot import CONTROL_PERIOD_NS, JOINTS, SUBSTEPS
+from hexapod_sim.joint_names import by_joint
+from hexapod_sim.robot import (
+    CONTROL_PERIOD_NS,
+    JOINT_LOWER,
+    JOINT_UPPER,
+    JOINTS,
+    PROPORTIONAL_BAND,
+    SUBSTEPS,
+)
 from numpy.typing import NDArray
+from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 from hexapod_cpg.mapping import COMMAND_FIELDS, Command
 
 _SUBSTEP_NS = CONTROL_PERIOD_NS // SUBSTEPS
+# A load pushes a servo at a limit so far beyond it; what is farther out is no angle of this robot.
+_BEYOND_LIMIT = PROPORTIONAL_BAND
 
 
 def command_to_message(command: Command, message: CpgCommand) -> None:
@@ -42,6 +53,30 @@ def command_from_message(message: CpgCommand) -> Command:
             )
         values[field] = value
     return Command(**values)
+
+
+def pose_from_message(message: JointState) -> NDArray[np.float64]:
+    """Return the joint angles (18,), rad, that a message carries; matched by joint name.
+
+    Raises:
+        ValueError: a joint is missing or named twice, or names and numbers are not as many.
+        InvalidMessageError: an angle is not finite, or none that the joint can have; the text
+            names the joint.
+    """
+    try:
+        pose = by_joint(message.name, message.position, 'position')
+    except ValueError as error:
+        raise ValueError(f'joint_states: {error}') from error
+    # A comparison with NaN is false.
+    good = (pose >= JOINT_LOWER - _BEYOND_LIMIT) & (pose <= JOINT_UPPER + _BEYOND_LIMIT)
+    if not good.all():
+        joint = int(np.argmin(good))
+        raise InvalidMessageError(
+            'beyond_limit' if np.isfinite(pose[joint]) else 'not_finite',
+            f'joint_states: {JOINTS[joint]} is at {pose[joint]:.3g} rad, expected '
+            f'{JOINT_LOWER[joint]:g} to {JOINT_UPPER[joint]:g}',
+        )
+    return pose
 
 
 def new_trajectory() -> JointTrajectory:

@@ -79,6 +79,11 @@ def test_a_command_gives_the_trajectory_of_its_period_and_the_state_at_its_end(r
     np.testing.assert_array_equal(rig.states[1].y, cpg.y)
 
 
+def test_in_lock_step_it_hears_nothing_but_commands(rig: Rig) -> None:
+    heard = {subscription.topic_name for subscription in rig.cpg.subscriptions}
+    assert heard - {'/parameter_events'} == {'/cpg/command'}
+
+
 def test_a_command_that_is_not_due_is_counted_and_not_played(rig: Rig) -> None:
     rig.command(START + PERIOD)
     rig.command(START)

@@ -193,7 +193,7 @@ def ros_args(tmp_path, swapped, pace: float) -> list[str]:
         *(
             word
             for ours, own in remaps(swapped).items()
-            for node in ('play', 'test')
+            for node in ('cpg', 'play', 'test')
             for word in ('-r', f'{node}:{ours}:={own}')
         ),
     ]

@@ -60,6 +60,13 @@ def test_a_drivers_own_frame_is_an_argument(processes) -> None:
     assert "frames: ''" in parameters(processes('robot.launch.xml')['play'])
 
 
+def test_the_pattern_generator_starts_from_the_joints_that_the_agent_hears(processes) -> None:
+    robot = processes('robot.launch.xml', joint_states='/servos/state')
+    assert 'joint_states:=/servos/state' in robot['cpg'].command
+    assert 'joint_states:=/servos/state' in robot['play'].command
+    assert 'start_from: measured' in parameters(robot['cpg'])
+
+
 def test_the_servos_topic_is_an_argument(processes) -> None:
     cpg = processes('robot.launch.xml', joint_trajectory='/servos/goal')['cpg']
     assert 'joint_trajectory:=/servos/goal' in cpg.command

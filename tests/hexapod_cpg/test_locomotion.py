@@ -14,6 +14,9 @@ from hexapod_cpg.joint_guard import JointGuard
 from hexapod_cpg.locomotion import Locomotion, Motion
 from hexapod_cpg.mapping import command_from_action
 from hexapod_cpg.oscillator import HopfConfig
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
 from hexapod_sim import robot
 
@@ -70,3 +73,46 @@ def test_a_command_of_no_use_is_refused_and_changes_nothing(legs, value: float) 
     np.testing.assert_array_equal(legs.cpg.x, before[0])
     np.testing.assert_array_equal(legs.guard.position, before[1])
     assert legs.motion is before[2]
+
+
+any_pose = arrays(np.float64, 18, elements=st.floats(-1.0, 1.0)).map(
+    lambda share: np.clip(robot.JOINT_UPPER * share, robot.JOINT_LOWER, robot.JOINT_UPPER)
+)
+
+
+@given(any_pose, st.booleans())
+def test_from_any_pose_the_legs_rise_slowly_to_stand_before_they_walk(pose, commanded) -> None:
+    legs = Locomotion(HopfConfig(), JointGuard(RATE), STOP_RATE)
+    legs.wait(HopfConfig())
+    legs.rise(pose)
+    position, periods = pose, 0
+    while legs.motion is not Motion.STANDING:
+        assert legs.motion is Motion.RISING
+        targets = legs.walk(COMMAND) if commanded else legs.stop()
+        steps = np.abs(np.diff(targets, axis=0, prepend=position[None]))
+        assert steps.max() <= STOP_RATE * 0.005 * (1 + 1e-9)
+        assert (targets >= robot.JOINT_LOWER).all()
+        assert (targets <= robot.JOINT_UPPER).all()
+        position = targets[-1]
+        periods += 1
+    np.testing.assert_array_equal(position, robot.NEUTRAL_POSE)
+    # The rounding of many steps may cost one period more.
+    needed = np.abs(pose - robot.NEUTRAL_POSE).max() / (STOP_RATE * 0.025)
+    assert needed - 1e-9 <= periods <= needed + 2
+    np.testing.assert_array_equal(legs.cpg.x, Cpg().x)  # the gait has not begun
+    legs.walk(COMMAND)
+    assert legs.motion is Motion.WALKING
+
+
+def test_a_joint_measured_beyond_its_limit_begins_at_the_limit(legs) -> None:
+    legs.rise(robot.JOINT_UPPER + 0.05)
+    step = STOP_RATE * 0.005
+    np.testing.assert_allclose(legs.stop()[0], robot.JOINT_UPPER - step, rtol=0, atol=1e-12)
+
+
+def test_nothing_moves_before_somebody_tells_where_the_joints_are(legs) -> None:
+    legs.wait(HopfConfig())
+    for move in (legs.stop, lambda: legs.walk(COMMAND)):
+        with pytest.raises(RuntimeError, match='before the first motion'):
+            move()
+    assert legs.motion is Motion.WAITING

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import argparse
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -38,6 +38,7 @@ from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.action import get_action_server_names_and_types_by_node
 from rclpy.lifecycle import LifecycleNode
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 
 from hexapod_agent import checkpoint
 from hexapod_bringup.description_node import DescriptionNode
@@ -54,6 +55,8 @@ _NODES = {
     'fake_driver': (FakeDriverNode, 'hexapod_sim fake_driver'),
     'description': (DescriptionNode, 'hexapod_bringup description_node'),
 }
+# Nodes that have further topics in real time.
+_TWO_FACED = ('cpg',)
 # Parameters that the nodes were given here, and their defaults.
 _GIVEN = {
     'manager': {
@@ -108,9 +111,10 @@ def node_tables(bag: Path) -> str:
         rclpy.init(args=['--ros-args', *(word for value in given for word in ('-p', value))])
         sections = []
         for name, (make, executable) in _NODES.items():
+            further = _interface_in_real_time(make) if name in _TWO_FACED else []
             node = make()
             played = set(BagFile(bag).types) if name == 'player' else set()
-            table = _node_table(node, played)
+            table = _node_table(node, played, further)
             sections.append(f'#### `{name}`: `ros2 run {executable}`\n\n{table}')
             node.destroy_node()
         rclpy.shutdown()
@@ -130,8 +134,16 @@ def replace(text: str, marker: str, table: str) -> str:
     return f'{head}{begin}\n{table}\n{end}{rest.split(end, 1)[1]}'
 
 
-def _node_table(node: Node, played: set[str]) -> str:
-    rows = [row for row in _interface(node) if f'/{row[1].strip("`")}' not in played]
+def _interface_in_real_time(make: Callable[..., Node]) -> list[tuple[str, ...]]:
+    node = make([Parameter('sync', value=REALTIME)])
+    rows = list(_interface(node))
+    node.destroy_node()
+    return rows
+
+
+def _node_table(node: Node, played: set[str], further: Iterable[tuple[str, ...]]) -> str:
+    every = dict.fromkeys([*_interface(node), *further])
+    rows = [row for row in every if f'/{row[1].strip("`")}' not in played]
     if played:
         rows.append(('publishes', 'every topic of the bag', 'as recorded'))
     interface = _markdown(('', 'name', 'type'), rows)
