@@ -21,6 +21,7 @@ from hexapod_agent.config import AgentConfig
 from hexapod_agent.ddpg import Ddpg
 from hexapod_agent.noise import OrnsteinUhlenbeckNoise
 from hexapod_agent.observation import ACTION_SIZE, ObservationSpec
+from hexapod_agent.policies import trained_policy
 from hexapod_agent.replay import Batch, ReplayBuffer
 from hexapod_agent.summary import EpisodeRecord, EpisodeSummary
 
@@ -56,6 +57,7 @@ class Trainer:
             ddpg.target_smoothing, _torch_generator(init),
             hidden_dtype=torch.bfloat16 if precision == 'bfloat16' else None,
         )  # fmt: skip
+        self._policy = trained_policy(self.agent)
         self._replay = ReplayBuffer(
             ddpg.buffer_size, spec.size, ACTION_SIZE, ddpg.discount, ddpg.n_step
         )
@@ -105,7 +107,7 @@ class Trainer:
             Action (30,) with exploration noise, within +-1.
         """
         self.store(observation, outcome)
-        return self.explore(self.agent.act(torch.from_numpy(observation).unsqueeze(0))[0].numpy())
+        return self.explore(self._policy(observation))
 
     def explore(self, output: NDArray[np.float32]) -> NDArray[np.float32]:
         """Return the action that is taken where the policy put out (30,): noise is added."""
