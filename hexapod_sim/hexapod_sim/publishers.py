@@ -8,6 +8,7 @@ from __future__ import annotations
 from array import array
 from typing import TYPE_CHECKING
 
+from builtin_interfaces.msg import Time
 from hexapod_interfaces.msg import LineOffset, StepOutcome
 from hexapod_node.intra_process import LockStepPublisher
 from hexapod_node.stamps import time_message
@@ -59,28 +60,29 @@ class SimPublishers:
     def publish(self, outcome: Outcome, now_ns: int) -> None:
         """Publish the sample of now: sensors first, then what they earned, then the clock."""
         stamp = time_message(now_ns)
-        heard = [entry for entry in self._sensors if entry[2].get_subscription_count()]
+        routes = [(*entry, publisher.route()) for *entry, publisher in self._sensors]
+        heard = [(sensor, message, publish) for sensor, message, publish in routes if publish]
         needed = {key for sensor, _, _ in heard for key in sensor.readings}
         readings = read(self._task.simulation, needed)
-        for sensor, message, publisher in heard:
+        for sensor, message, publish in heard:
             message.header.stamp = stamp
             sensor.fill(message, readings)
-            publisher.publish(message)
-        if self._line_offset_publisher.get_subscription_count():
+            publish(message)
+        if publish := self._line_offset_publisher.route():
             self._line_offset.header.stamp = stamp
             self._line_offset.offset = self._task.line_offset
-            self._line_offset_publisher.publish(self._line_offset)
-        if self._odometry_publisher.get_subscription_count():
+            publish(self._line_offset)
+        if publish := self._odometry_publisher.route():
             fill_odometry(self._odometry, self._task.simulation)
             self._odometry.header.stamp = stamp
-            self._odometry_publisher.publish(self._odometry)
-        self._publish_outcome(outcome, now_ns)
-        if self._clock_publisher.get_subscription_count():
-            self._clock_publisher.publish(Clock(clock=stamp))
+            publish(self._odometry)
+        self._publish_outcome(outcome, stamp)
+        if publish := self._clock_publisher.route():
+            publish(Clock(clock=stamp))
 
-    def _publish_outcome(self, outcome: Outcome, now_ns: int) -> None:
+    def _publish_outcome(self, outcome: Outcome, stamp: Time) -> None:
         message = self._outcome
-        message.header.stamp = time_message(now_ns)
+        message.header.stamp = stamp
         message.step = outcome.step
         message.reward = outcome.reward
         message.term_names = list(outcome.terms)

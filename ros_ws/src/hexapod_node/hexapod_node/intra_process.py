@@ -9,8 +9,9 @@ a topic that somebody outside of the process listens to goes through the middlew
 
 from __future__ import annotations
 
+import functools
 from collections import defaultdict
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -19,6 +20,8 @@ from rclpy.exceptions import InvalidHandle
 from rclpy.node import Node
 
 from hexapod_node.qos import LOCK_STEP
+
+Publish = Callable[[Any], None]
 
 _subscriptions: WeakKeyDictionary[Context, defaultdict[str, list[LockStepSubscription]]]
 _subscriptions = WeakKeyDictionary()
@@ -36,9 +39,7 @@ class LockStepSubscription:
     of that message must not be needed after the next sample.
     """
 
-    def __init__(
-        self, node: Node, kind: type, topic: str, callback: Callable[[Any], None]
-    ) -> None:
+    def __init__(self, node: Node, kind: type, topic: str, callback: Publish) -> None:
         self.callback = callback
         self._node = node
         self._subscription = node.create_subscription(kind, topic, callback, LOCK_STEP)
@@ -58,6 +59,11 @@ class LockStepSubscription:
             return False
 
 
+def _call(subscriptions: Sequence[LockStepSubscription], message: Any) -> None:
+    for each in subscriptions:
+        each.callback(message)
+
+
 class LockStepPublisher:
     """A publisher that calls the subscriptions of its process where nobody else listens."""
 
@@ -70,11 +76,22 @@ class LockStepPublisher:
         """Return the number of matched subscriptions, in this process or in any other."""
         return int(self._publisher.get_subscription_count())
 
-    def publish(self, message: Any) -> None:
-        """Publish a sample; the message may be used again for the next one."""
+    def route(self) -> Publish | None:
+        """Return what publishes a sample to whoever listens now; None if nobody does.
+
+        The message may be used again for the next sample.
+        """
+        listeners = self.get_subscription_count()
+        if not listeners:
+            return None
         matched = [each for each in self._neighbours if each.is_matched()]
-        if not matched or len(matched) < self.get_subscription_count():
-            self._publisher.publish(message)
-            return
-        for subscription in matched:
-            subscription.callback(message)
+        if len(matched) < listeners:
+            return self._publisher.publish
+        if len(matched) == 1:
+            return matched[0].callback
+        return functools.partial(_call, matched)
+
+    def publish(self, message: Any) -> None:
+        """Publish a sample."""
+        if (publish := self.route()) is not None:
+            publish(message)
