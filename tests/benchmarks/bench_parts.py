@@ -4,9 +4,10 @@
 """Where the processor time of a control period goes, in a composed worker that does not learn.
 
 Run: `python tests/benchmarks/bench_parts.py`. The worker runs in this process, with a clock around
-each part. DDS is what is spent outside of all callbacks, and in publishing: it contains turning
-messages into bytes and back. Python is the rest: filling and reading messages, observations,
-rewards, coroutines. Processor time, for other load only ever adds to the time on the wall.
+each part that stands still while another part's runs. DDS is what is spent outside of all
+callbacks, and in publishing: it contains turning messages into bytes and back. Python is the rest:
+filling and reading messages, observations, rewards, coroutines. Processor time, for other load
+only ever adds to the time on the wall.
 """
 
 from __future__ import annotations
@@ -40,21 +41,31 @@ from rich.table import Table
 OBSERVATIONS = 'ABCDE'
 PERIODS = 600
 EPISODES = 5
-INSIDE = ('physics', 'pattern generator', 'actor and noise', 'publishing')
-"""Parts that lie within callbacks, and not within each other."""
 spent: Counter[str] = Counter()
 """Seconds by part."""
+_parts = ['DDS']
+_since = 0.0
+
+
+def switch() -> None:
+    """Book the time since the last switch to the part that is under way."""
+    global _since
+    now = time.process_time()
+    spent[_parts[-1]] += now - _since
+    _since = now
 
 
 def timed(part: str, function: Callable[..., Any]) -> Callable[..., Any]:
     """Return the function with a clock around it."""
 
     def call(*args: Any, **options: Any) -> Any:
-        begin = time.thread_time()
+        switch()
+        _parts.append(part)
         try:
             return function(*args, **options)
         finally:
-            spent[part] += time.thread_time() - begin
+            switch()
+            _parts.pop()
 
     return call
 
@@ -64,11 +75,12 @@ def watch() -> None:
     Simulation.advance = timed('physics', Simulation.advance)
     Locomotion.play = timed('pattern generator', Locomotion.play)
     Trainer.observe = timed('actor and noise', Trainer.observe)
-    Publisher.publish = timed('publishing', Publisher.publish)
+    Publisher.publish = timed('DDS', Publisher.publish)
+    Future.set_result = timed('Python', Future.set_result)  # resumes coroutines
     subscribe = Node.create_subscription
 
     def create_subscription(node: Node, kind: type, topic: str, callback: Any, *rest: Any, **more):
-        return subscribe(node, kind, topic, timed('callbacks', callback), *rest, **more)
+        return subscribe(node, kind, topic, timed('Python', callback), *rest, **more)
 
     Node.create_subscription = create_subscription
 
@@ -105,16 +117,15 @@ class Worker:
         return future.result()
 
 
-def measure(config: Path) -> float:
-    """Return the seconds of a run after a first one that warms the worker up."""
+def measure(config: Path) -> None:
+    """Leave in `spent` a run after a first one that warms the worker up."""
     worker = Worker(config)
     worker.train(1)
+    switch()
     spent.clear()
-    begin = time.process_time()
     worker.train(EPISODES)
-    whole = time.process_time() - begin
+    switch()
     worker.close()
-    return whole
 
 
 def main() -> None:
@@ -124,14 +135,12 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as directory:
         config = Path(directory) / 'no_learner.yaml'
         config.write_text('ddpg: {batch_size: 100000}\n')  # the buffer never holds a batch
-        whole = measure(config)
+        measure(config)
     rclpy.try_shutdown()
-    inside = sum(spent[part] for part in INSIDE)
-    parts = {part: spent[part] for part in INSIDE[:3]}
-    parts['DDS'] = whole - spent['callbacks'] + spent['publishing']
-    parts['Python'] = spent['callbacks'] - inside
+    whole = spent.total()
+    parts = ('physics', 'pattern generator', 'actor and noise', 'Python', 'DDS')
     table = Table('part of a control period', 'µs', 'share')
-    for name, seconds in (parts | {'all of it': whole}).items():
+    for name, seconds in [(part, spent[part]) for part in parts] + [('all of it', whole)]:
         table.add_row(
             name, f'{seconds / (EPISODES * PERIODS) * 1e6:.0f}', f'{seconds / whole:.0%}'
         )
