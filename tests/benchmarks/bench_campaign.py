@@ -5,16 +5,21 @@
 
 Run: `python tests/benchmarks/bench_campaign.py`. The time is from the first bag's beginning to the
 last bag's end, so that starting workers does not count, but everything between two runs does.
+What two processes that do nothing but learn reach, sharing caches and memory, is the bound.
 """
 
 from __future__ import annotations
 
 import os
 import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
 
+from hexapod_agent.config import AgentConfig
+from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.training import Trainer
 from hexapod_doe.campaigns.folder import read_progress
 from hexapod_doe.campaigns.progress import State
 from rich.console import Console
@@ -23,6 +28,7 @@ from rich.table import Table
 
 ROWS, EPISODES, STEPS = 8, 3, 300
 TARGET = 1.8
+LEARN_S = 10.0
 DOMAIN = '97'
 PLAN = 'ros2 run hexapod_doe plan --design eighth --replicates 1 --seed 1 --out {plan}'
 MANAGER = (
@@ -59,19 +65,43 @@ def episodes_per_second(directory: Path, workers: int) -> float:
     return ROWS * EPISODES / (ended - began)
 
 
+def learn() -> None:
+    """Print how many updates a second one learner makes."""
+    agent = Trainer(ObservationSpec('ABCDE'), AgentConfig.load(), 1).agent
+    for tensor in vars(agent.batch).values():
+        tensor.uniform_(-1.0, 1.0)
+    updates, began = 0, time.perf_counter()
+    while time.perf_counter() - began < LEARN_S:
+        agent.update()
+        updates += 1
+    print(updates / LEARN_S)
+
+
+def updates_per_second(processes: int) -> float:
+    """Return the updates of learners side by side, each in a process of its own."""
+    command = [sys.executable, __file__, 'learn']
+    running = [
+        subprocess.Popen(command, stdout=subprocess.PIPE, text=True) for _ in range(processes)
+    ]
+    return sum(float(process.communicate()[0]) for process in running)
+
+
 def main() -> None:
-    """Print both rates and their ratio."""
+    """Print both rates and their ratio, and the ratio of the learners alone."""
     os.environ['ROS_DOMAIN_ID'] = DOMAIN
-    rates = {}
+    os.environ['OMP_NUM_THREADS'] = '1'
+    rates, bound = {}, {}
     with Progress(transient=True) as progress:
         for workers in progress.track((1, 2), description='campaigns'):
+            bound[workers] = updates_per_second(workers)
             with tempfile.TemporaryDirectory() as name:
                 rates[workers] = episodes_per_second(Path(name), workers)
-    table = Table('local workers', 'episodes/s', 'times one worker', 'target')
-    table.add_row('1', f'{rates[1]:.2f}', '', '')
-    table.add_row('2', f'{rates[2]:.2f}', f'{rates[2] / rates[1]:.2f}', f'{TARGET}')
+    table = Table('local workers', 'episodes/s', 'times one worker', 'learners alone', 'target')
+    table.add_row('1', f'{rates[1]:.2f}', '', '', '')
+    ratios = (f'{rates[2] / rates[1]:.2f}', f'{bound[2] / bound[1]:.2f}')
+    table.add_row('2', f'{rates[2]:.2f}', *ratios, f'{TARGET}')
     Console().print(table)
 
 
 if __name__ == '__main__':
-    main()
+    learn() if sys.argv[1:] == ['learn'] else main()
