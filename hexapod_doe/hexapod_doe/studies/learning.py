@@ -141,7 +141,7 @@ def _parser() -> argparse.ArgumentParser:
         '--sets', nargs='+', default=['ABCDE', 'none'], help='sets of sensors (ABCDE and none)'
     )
     parser.add_argument('--seeds', type=int, default=5, help='runs of each set (default 5)')
-    parser.add_argument('--episodes', type=int, default=200, help='per run (default 200)')
+    parser.add_argument('--episodes', type=int, default=300, help='per run (default 300)')
     parser.add_argument('--starts', type=int, default=50, help='of an evaluation (default 50)')
     parser.add_argument('--config', type=Path, help='YAML file of changes to article.yaml')
     parser.add_argument('--jobs', type=int, default=2, help='runs side by side (default 2)')
