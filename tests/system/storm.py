@@ -64,11 +64,12 @@ class Storm:
 
     def _size(self) -> int:
         total = 0
-        for file in self._runs.glob('*/*.mcap'):
-            try:
-                total += file.stat().st_size
-            except FileNotFoundError:  # renamed meanwhile
-                continue
+        for folder, _, names in os.walk(self._runs):  # passes over what vanishes meanwhile
+            for name in names:
+                try:
+                    total += Path(folder, name).stat().st_size if name.endswith('.mcap') else 0
+                except FileNotFoundError:  # renamed meanwhile
+                    continue
         return total
 
 

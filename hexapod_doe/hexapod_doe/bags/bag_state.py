@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from hexapod_doe.bags.bag_file import BagFile
@@ -29,6 +30,6 @@ def find_bags(path: str | Path) -> list[Path]:
     root = Path(path)
     if not root.is_dir():
         raise BagError(f'{root}: no such directory, expected a folder with bags')
-    return sorted(
-        file.parent for file in root.rglob(METADATA_FILE) if not is_unfinished(file.parent)
-    )
+    # os.walk, unlike rglob, passes over a folder that is renamed meanwhile: runs go on.
+    folders = (Path(folder) for folder, _, names in os.walk(root) if METADATA_FILE in names)
+    return sorted(folder for folder in folders if not is_unfinished(folder))
