@@ -15,7 +15,7 @@ from hexapod_node.conditions import until_true
 from hexapod_node.coroutine_service import create_coroutine_service
 from hexapod_node.diagnostics import Diagnostics, Health
 from hexapod_node.parameters import Parameter, declare
-from hexapod_node.qos import RECORD
+from hexapod_node.qos import LOCK_STEP
 from hexapod_node.raw_topics import RawSubscriptions, subscribe_raw
 from hexapod_node.spin import run
 from hexapod_node.stamps import time_message, to_nanoseconds
@@ -78,7 +78,7 @@ class RecorderNode(Node):
         create_coroutine_service(self, SecureRecording, '~/secure', self._on_secure)
         create_coroutine_service(self, FinishRecording, '~/finish', self._on_finish)
         # Always there, so that it is matched when a run begins.
-        subscribe_raw(self, RESULT_TOPIC, EPISODE_RESULT, self._on_result, RECORD)
+        subscribe_raw(self, RESULT_TOPIC, EPISODE_RESULT, self._on_result, LOCK_STEP)
         Diagnostics(self, self._health)
 
     def destroy_node(self) -> None:

@@ -131,11 +131,17 @@ class Faulty(SimNode):
         super().__init__()
         for publisher in self._topics.all:
             if publisher.topic_name == f'/{topic}':
-                publisher.publish = compose(publisher.publish, spoil)
+                publisher.route = compose(publisher.route, spoil)
 
 
-def compose(publish, spoil):
-    return lambda message: publish(spoil(message))
+def compose(route, spoil):
+    """Return the route of a publisher whose messages are spoiled on their way."""
+
+    def spoiled():
+        publish = route()
+        return publish and (lambda message: publish(spoil(message)))
+
+    return spoiled
 
 
 def nan(message: Imu) -> Imu:
@@ -178,7 +184,7 @@ def test_a_silent_topic_ends_the_run_by_name(graph, short: str) -> None:
     graph.add(sim, CpgNode(), agent)
     for publisher in sim._topics.all:
         if publisher.topic_name == '/body/height':
-            publisher.publish = lambda message: None
+            publisher.route = lambda: None
     goal = TrainRun.Goal(run_id='r', observations='CE', seed=1, episodes=1, config=short)
     response = graph.train(goal)
     assert 'no sample of body/height stamped' in response.result.message

@@ -17,7 +17,7 @@ from hexapod_doe.bags.bag_writer import BagWriter
 from hexapod_doe.bags.rosbag2 import OfferedQos, Topic
 from hexapod_doe.errors import BagError
 from hexapod_doe.player_node import PlayerNode
-from hexapod_node.qos import RECORD
+from hexapod_node.qos import LOCK_STEP
 from hexapod_node.raw_topics import subscribe_raw
 from rclpy.parameter import Parameter
 from rclpy.serialization import serialize_message
@@ -62,8 +62,8 @@ class Listener:
         self.clock: list[int] = []
         node = graph.nodes[0]
         for name, kind in topics.items():
-            subscribe_raw(node, name, kind, self._noting(name), RECORD)
-        node.create_subscription(Clock, '/clock', self._on_clock, RECORD)
+            subscribe_raw(node, name, kind, self._noting(name), LOCK_STEP)
+        node.create_subscription(Clock, '/clock', self._on_clock, LOCK_STEP)
 
     def _noting(self, name):
         return lambda data: self.heard.append((name, data, time.monotonic()))

@@ -28,14 +28,6 @@ LATCHED = QoSProfile(
     depth=1,
 )
 
-# The recorder keeps whatever comes while it writes.
-RECORD = QoSProfile(
-    reliability=ReliabilityPolicy.RELIABLE,
-    durability=DurabilityPolicy.VOLATILE,
-    history=HistoryPolicy.KEEP_LAST,
-    depth=1000,
-)
-
 # In real time drivers of any kind match, and what was lost is not sent again.
 DRIVER = QoSProfile(
     reliability=ReliabilityPolicy.BEST_EFFORT,

@@ -15,7 +15,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-from hexapod_node.qos import RECORD
+from hexapod_node.qos import LOCK_STEP
 
 
 def message_class(type_name: str) -> type:
@@ -103,6 +103,6 @@ def matching_qos(publishers: Sequence[TopicEndpointInfo]) -> QoSProfile:
     return QoSProfile(
         reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
         durability=(DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE),
-        history=RECORD.history,
-        depth=RECORD.depth,
+        history=LOCK_STEP.history,
+        depth=LOCK_STEP.depth,
     )
