@@ -5,11 +5,14 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import subprocess
 import sys
+import weakref
 
 import pytest
+import rclpy
 from hexapod_node.intra_process import LockStepPublisher, LockStepSubscription
 from hexapod_node.qos import LOCK_STEP
 from rclpy.node import Node
@@ -122,3 +125,20 @@ def test_who_left_with_its_node_does_not_stand_for_who_came(pair: Pair) -> None:
     pair.say('a')
     pair.graph.until(lambda: came == ['a'])
     assert pair.heard == []
+
+
+def test_a_node_and_its_context_are_freed_when_they_end() -> None:
+    def live() -> tuple[weakref.ref, weakref.ref]:
+        context = rclpy.Context()
+        rclpy.init(context=context)
+        node = Node('short', context=context)
+        publisher = LockStepPublisher(node, String, 'topic')
+        LockStepSubscription(node, String, 'topic', lambda message: None)
+        publisher.publish(String(data='a'))
+        node.destroy_node()
+        rclpy.shutdown(context=context)
+        return weakref.ref(node), weakref.ref(context)
+
+    ended = live()
+    gc.collect()
+    assert [reference() for reference in ended] == [None, None]

@@ -10,10 +10,11 @@ a topic that somebody outside of the process listens to goes through the middlew
 from __future__ import annotations
 
 import functools
+import itertools
 from collections import defaultdict
 from collections.abc import Callable, Sequence
 from typing import Any
-from weakref import WeakKeyDictionary
+from weakref import WeakKeyDictionary, WeakValueDictionary
 
 from rclpy.context import Context
 from rclpy.exceptions import InvalidHandle
@@ -23,13 +24,15 @@ from hexapod_node.qos import LOCK_STEP
 
 Publish = Callable[[Any], None]
 
-_subscriptions: WeakKeyDictionary[Context, defaultdict[str, list[LockStepSubscription]]]
-_subscriptions = WeakKeyDictionary()
+# By number, in the order of their making. Nothing here may keep a node or its context alive.
+_Neighbours = WeakValueDictionary[int, 'LockStepSubscription']
+_subscriptions: WeakKeyDictionary[Context, defaultdict[str, _Neighbours]] = WeakKeyDictionary()
+_numbers = itertools.count()
 
 
-def _of_process(node: Node, topic: str) -> list[LockStepSubscription]:
+def _neighbours(node: Node, topic: str) -> _Neighbours:
     """Return the subscriptions of a topic that the context's nodes have, to read or to change."""
-    return _subscriptions.setdefault(node.context, defaultdict(list))[topic]
+    return _subscriptions.setdefault(node.context, defaultdict(WeakValueDictionary))[topic]
 
 
 class LockStepSubscription:
@@ -42,14 +45,19 @@ class LockStepSubscription:
     def __init__(self, node: Node, kind: type, topic: str, callback: Publish) -> None:
         self.callback = callback
         self._node = node
-        self._subscription = node.create_subscription(kind, topic, callback, LOCK_STEP)
+        # The bound method lets it live as long as the node has the subscription.
+        self._subscription = node.create_subscription(kind, topic, self._on_message, LOCK_STEP)
         self.topic_name: str = self._subscription.topic_name
-        _of_process(node, self.topic_name).append(self)
+        self._number = next(_numbers)
+        _neighbours(node, self.topic_name)[self._number] = self
 
     def destroy(self) -> None:
         """Unsubscribe."""
-        _of_process(self._node, self.topic_name).remove(self)
+        _neighbours(self._node, self.topic_name).pop(self._number)
         self._node.destroy_subscription(self._subscription)
+
+    def _on_message(self, message: Any) -> None:
+        self.callback(message)
 
     def is_matched(self) -> bool:
         """Return whether it has a publisher; not so once its node is destroyed."""
@@ -70,7 +78,7 @@ class LockStepPublisher:
     def __init__(self, node: Node, kind: type, topic: str) -> None:
         self._publisher = node.create_publisher(kind, topic, LOCK_STEP)
         self.topic_name: str = self._publisher.topic_name
-        self._neighbours = _of_process(node, self.topic_name)
+        self._neighbours = _neighbours(node, self.topic_name)
 
     def get_subscription_count(self) -> int:
         """Return the number of matched subscriptions, in this process or in any other."""
@@ -84,7 +92,7 @@ class LockStepPublisher:
         listeners = self.get_subscription_count()
         if not listeners:
             return None
-        matched = [each for each in self._neighbours if each.is_matched()]
+        matched = [each for each in self._neighbours.values() if each.is_matched()]
         if len(matched) < listeners:
             return self._publisher.publish
         if len(matched) == 1:
