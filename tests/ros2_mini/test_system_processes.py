@@ -137,9 +137,11 @@ class TestInterrupted:
     def test_goal_is_canceled(self, number, start, sample):
         goal = '{episodes: 100000}'
         process = start(
-            'action', 'send_goal', '/train', 'hexapod_interfaces/action/TrainRun', goal
+            *('action', 'send_goal', '/train', 'hexapod_interfaces/action/TrainRun', goal),
+            '--feedback',
         )
-        read_until(process, 'Goal accepted')
+        # The server has come to know the client's readers in their order: feedback is the last.
+        read_until(process, 'Feedback:')
         process.send_signal(number)
         assert process.communicate(timeout=20)[0].endswith('Canceling goal...\nGoal canceled.\n')
         assert process.returncode == number
