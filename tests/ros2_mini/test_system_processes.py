@@ -143,7 +143,9 @@ class TestInterrupted:
         # The server has come to know the client's readers in their order: feedback is the last.
         read_until(process, 'Feedback:')
         process.send_signal(number)
-        assert process.communicate(timeout=20)[0].endswith('Canceling goal...\nGoal canceled.\n')
+        told = process.communicate(timeout=20)[0]
+        assert 'Canceling goal...\n' in told
+        assert told.endswith('Goal canceled.\n')
         assert process.returncode == number
         assert sample.stdout.readline() == 'canceled\n'
 
