@@ -116,9 +116,9 @@ def record_from_graph(folder: Path) -> float:
         executor.spin_once(timeout_sec=0.5)
     seconds = time.process_time() - begin
     publisher.join()
+    executor.shutdown()
     recorder.destroy_node()
     client.destroy_node()
-    executor.shutdown()
     rclpy.try_shutdown()
     return seconds / (PERIODS * TOPICS)
 

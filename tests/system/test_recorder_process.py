@@ -50,8 +50,8 @@ def recorder(tmp_path):
     yield process
     process.kill()
     process.wait()
-    node.destroy_node()
     executor.shutdown()
+    node.destroy_node()
     rclpy.shutdown()
 
 

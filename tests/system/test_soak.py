@@ -71,8 +71,8 @@ class Client:
 
     def close(self) -> None:
         self._client.destroy()
-        self.node.destroy_node()
         self._executor.shutdown()
+        self.node.destroy_node()
 
     def _result(self, future: Future):
         self._executor.spin_until_future_complete(future)
