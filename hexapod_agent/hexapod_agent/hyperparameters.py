@@ -9,6 +9,8 @@ No torch here: the environment reads the same file as the learner.
 from dataclasses import dataclass
 from typing import Literal
 
+from pydantic import PositiveInt
+
 
 @dataclass(frozen=True)
 class ActorConfig:
@@ -62,6 +64,8 @@ class DdpgConfig:
         discount: Discount factor per step.
         n_step: Rewards summed before the value of a later observation takes over.
         target_smoothing: Share of the online network that moves into its target per update.
+        update_every: Steps between two groups of updates; a group has as many updates. Steps at
+            the end of an episode that fill no group go into the buffer alone.
         reward_scale: Factor of the reward as the critic learns it.
     """
 
@@ -70,6 +74,7 @@ class DdpgConfig:
     discount: float
     n_step: int
     target_smoothing: float
+    update_every: PositiveInt
     reward_scale: float
 
 

@@ -16,7 +16,7 @@ from itertools import pairwise
 import torch
 from torch import Tensor
 
-from hexapod_agent.layers import Cast, Dense, layer_shapes, relu_backward
+from hexapod_agent.layers import Cast, Dense, Shortened, SingleUnit, layer_shapes, relu_backward
 from hexapod_agent.parameters import ParameterStack
 
 OUTPUT_BOUND = 5e-3  # of the output layers' initial weights
@@ -62,8 +62,9 @@ class Actor:
     ) -> None:
         wide = parameters.flat.dtype
         narrow = dtype or wide
-        self._hidden = _branch(parameters, gradients, 'hidden', batch, narrow)
-        self._output = Dense(parameters, gradients, 'output', batch, wide)
+        self._shortened = short = Shortened(parameters, gradients, narrow)
+        self._hidden = _branch(short, 'hidden', batch)
+        self._output = Dense(parameters, gradients, 'output', batch)
         last = self._hidden[-1].output
         self._widen = Cast(last, wide)
         self._narrow = Cast(last.to(wide), narrow)
@@ -75,8 +76,7 @@ class Actor:
 
     def refresh(self) -> None:
         """Take over parameters that have moved."""
-        for layer in self._hidden:
-            layer.refresh()
+        self._shortened.refresh()
 
     def forward(self, observation: Tensor) -> Tensor:
         """Actions of a batch, in the buffer `action`; `preactivation` holds them before tanh."""
@@ -100,9 +100,10 @@ class Actor:
             action_gradient, action_gradient, self._slope, value=-1.0, out=action_gradient
         )
         gradient.add_(self.preactivation, alpha=preactivation_factor)
+        hidden = self._narrow(self._output.backward_input(gradient))
+        _branch_backward(self._hidden, self._x, relu_backward(hidden, self._hidden[-1].output))
+        self._shortened.widen_gradients()
         self._output.backward(self._features, gradient)
-        gradient = self._narrow(self._output.backward_input(gradient))
-        _branch_backward(self._hidden, self._x, relu_backward(gradient, self._hidden[-1].output))
 
 
 class Critic:
@@ -139,9 +140,11 @@ class Critic:
     ) -> None:
         wide = parameters.flat.dtype
         narrow = dtype or wide
-        self._observation = _branch(parameters, gradients, 'observation', batch, narrow)
-        self._action = Dense(parameters, gradients, 'action', batch, narrow)
-        self._output = Dense(parameters, gradients, 'output', batch, wide)
+        self._shortened = short = Shortened(parameters, gradients, narrow)
+        self._observation = _branch(short, 'observation', batch)
+        self._action = Dense(short.parameters, short.gradients, 'action', batch)
+        head = SingleUnit if parameters.agents == 1 else Dense
+        self._output = head(parameters, gradients, 'output', batch)
         self.value = self._output.output
         self._merged = self._output.input_like(narrow)
         self._widen = Cast(self._merged, wide)
@@ -156,8 +159,7 @@ class Critic:
 
     def refresh(self) -> None:
         """Take over parameters that have moved."""
-        for layer in (*self._observation, self._action):
-            layer.refresh()
+        self._shortened.refresh()
 
     def forward(self, observation: Tensor, action: Tensor) -> Tensor:
         """Values (..., batch, 1) in the buffer `value`."""
@@ -170,16 +172,18 @@ class Critic:
             self._merged[..., self._observation_part] = last.forward(x)
             self._merged[..., self._action_part] = self._action.forward(self._a)
         else:
-            self._action.add_to(last.forward(x, out=self._merged), self._a)
+            last.product(x, last.bias + self._action.bias, self._merged)
+            self._action.product(self._a, self._merged, self._merged)
         self._features = self._widen(torch.relu_(self._merged))
         return self._output.forward(self._features)
 
     def backward(self, value_gradient: Tensor) -> None:
         """Fill the gradients of the last `forward`, given dL/dQ (..., batch, 1)."""
-        self._output.backward(self._features, value_gradient)
         merged = self._merged_gradient(value_gradient)
         self._action.backward(self._a, merged[..., self._action_part])
         _branch_backward(self._observation, self._s, merged[..., self._observation_part])
+        self._shortened.widen_gradients()
+        self._output.backward(self._features, value_gradient)
 
     def action_gradient(self, value_gradient: Tensor) -> Tensor:
         """Gradient with respect to the actions of the last `forward`, in a buffer."""
@@ -192,18 +196,12 @@ class Critic:
         return relu_backward(gradient, self._merged)
 
 
-def _branch(
-    parameters: ParameterStack,
-    gradients: ParameterStack | None,
-    prefix: str,
-    batch: int,
-    dtype: torch.dtype,
-) -> list[Dense]:
+def _branch(short: Shortened, prefix: str, batch: int) -> list[Dense]:
     """Make the layers '<prefix>0', '<prefix>1', ... that the parameters hold."""
-    names = [name.removesuffix('.weight') for name in parameters.shapes if 'weight' in name]
+    weights = (name for name in short.parameters.shapes if 'weight' in name)
     return [
-        Dense(parameters, gradients, name, batch, dtype)
-        for name in names
+        Dense(short.parameters, short.gradients, name.removesuffix('.weight'), batch)
+        for name in weights
         if name.startswith(prefix)
     ]
 

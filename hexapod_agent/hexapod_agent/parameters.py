@@ -45,9 +45,10 @@ class ParameterStack:
             for name, shape in self.shapes.items()
         }
 
-    def like(self) -> 'ParameterStack':
+    def like(self, dtype: torch.dtype | None = None) -> 'ParameterStack':
         """Make a stack of the same layout, filled with zeros: gradients."""
-        return ParameterStack(self.shapes, self.agents, self.flat.dtype, self.flat.device)
+        dtype = dtype or self.flat.dtype
+        return ParameterStack(self.shapes, self.agents, dtype, self.flat.device)
 
     def copy(self) -> 'ParameterStack':
         """Make a stack of the same layout with the same numbers: a target network."""

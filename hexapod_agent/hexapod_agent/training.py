@@ -117,16 +117,18 @@ class Trainer:
         return action
 
     def learn(self) -> None:
-        """Take one gradient step, once the buffer holds a batch."""
-        if self.ready:
+        """Take the gradient steps that are due after the newest observation."""
+        for _ in range(self.due):
             self.sample(self.agent.batch)
             statistics = self.agent.update()
             self.note_update({name: float(value) for name, value in vars(statistics).items()})
 
     @property
-    def ready(self) -> bool:
-        """Whether the buffer holds a batch to learn from."""
-        return len(self._replay) >= self.config.ddpg.batch_size
+    def due(self) -> int:
+        """Gradient steps to take now: a group of them, where it is time and there is a batch."""
+        config = self.config.ddpg
+        is_time = (self._step + 1) % config.update_every == 0
+        return config.update_every if is_time and len(self._replay) >= config.batch_size else 0
 
     def sample(self, batch: Batch) -> None:
         """Draw the next update's transitions into a batch of one agent."""

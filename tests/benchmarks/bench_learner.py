@@ -66,8 +66,9 @@ def matrix_products(batch: int, sizes: tuple[int, int, int, int]) -> Callable[[]
 
 
 def full_trainer(precision: str, letters: str = 'ABCDE') -> tuple[Trainer, HexapodLine]:
-    """A trainer of the default configuration with a filled buffer, and its environment."""
-    config = AgentConfig.from_mapping({'training': {'precision': precision}}, 'benchmark')
+    """A trainer with a filled buffer that updates at every call, and its environment."""
+    changes = {'training': {'precision': precision}, 'ddpg': {'update_every': 1}}
+    config = AgentConfig.from_mapping(changes, 'benchmark')
     trainer, env = Trainer(ObservationSpec(letters), config, 1), HexapodLine(letters, config)
     observation, _ = env.reset(seed=1)
     trainer.begin_episode(0)

@@ -16,7 +16,7 @@ def small_config() -> AgentConfig:
         'task': {'time_limit_steps': 40},
         'actor': {'hidden': [16, 12]},
         'critic': {'hidden': [16, 12]},
-        'ddpg': {'batch_size': 16, 'buffer_size': 5000},
+        'ddpg': {'batch_size': 16, 'buffer_size': 5000, 'update_every': 8},
         'noise': {'decay': 1e-4},
     }
     return AgentConfig.from_mapping(changes, 'small_config')

@@ -73,6 +73,7 @@ def test_mapping_round_trip():
         ('ddpg: {gamma: 1}', "unknown key 'ddpg.gamma', expected one of batch_size"),
         ('cpg: {hopf: {speed: 1}}', "unknown key 'cpg.hopf.speed'"),
         ('ddpg: {batch_size: many}', "ddpg.batch_size is 'many', expected"),
+        ('ddpg: {update_every: 0}', 'ddpg.update_every is 0, expected.*greater than 0'),
         ('critic: {merge: multiply}', "critic.merge is 'multiply', expected.*'add' or 'append'"),
         ('cpg: {hopf: {gait: gallop}}', 'gallop.*expected'),
         ('ddpg: 3', 'ddpg. is 3, expected keys'),

@@ -44,10 +44,24 @@ def test_summary_adds_up(make_trainer):
     assert summary.updates == 0
     assert np.isnan(summary.critic_loss)
     play(trainer, [1.0] * 30)
-    # 3 transitions are stored, a batch is 16: the update after step 13 is the first of 30 - 13.
-    assert trainer.summary.updates == 17
+    # A batch is 16: of the groups of 8 after steps 8, 16 and 24 the first finds 3 + 7 transitions.
+    assert trainer.summary.updates == 16
     assert trainer.summary.average_return == trainer.average_return == (6.0 + 30.0) / 2
     assert np.isfinite(trainer.summary.critic_loss)
+
+
+@pytest.mark.parametrize('update_every', [1, 4, 7])
+def test_updates_come_in_groups_and_as_often_as_steps(small_config, update_every):
+    ddpg = {'ddpg': {'batch_size': 1, 'buffer_size': 100, 'update_every': update_every}}
+    config = AgentConfig.from_mapping(small_config.to_mapping() | ddpg, 'a test')
+    trainer = Trainer(ObservationSpec('BC'), config, 1)
+    play(trainer, [1.0])  # so that the first group of the next episode finds a batch
+    trainer.begin_episode(1)
+    due = []
+    for step in range(28):
+        trainer.observe(observation(trainer), outcome(step))
+        due.append(trainer.due)
+    assert due == [*[0] * (update_every - 1), update_every] * (28 // update_every)
 
 
 def test_window_of_the_average_return(make_trainer):
@@ -67,8 +81,8 @@ def test_actions_are_within_bounds_and_noisy(make_trainer):
 
 
 def test_reward_is_scaled_for_the_critic_and_not_for_the_report(small_config):
-    changes = small_config.to_mapping() | {'ddpg': {'reward_scale': 0.5, 'batch_size': 16}}
-    config = AgentConfig.from_mapping(changes, 'a test')
+    ddpg = {'ddpg': {'reward_scale': 0.5, 'batch_size': 16, 'update_every': 1}}
+    config = AgentConfig.from_mapping(small_config.to_mapping() | ddpg, 'a test')
     trainer = Trainer(ObservationSpec('BC'), config, 1)
     play(trainer, [2.0] * 20)
     trainer.begin_episode(1)
@@ -126,6 +140,6 @@ def test_loss_that_is_not_finite_is_named(make_trainer):
     play(trainer, [1.0] * 20)
     trainer.agent.critic_parameters.flat[0, 0] = float('nan')
     trainer.begin_episode(1)
-    trainer.observe(observation(trainer), outcome(0))
-    with pytest.raises(TrainingDivergedError, match=r'critic_loss.* is nan.*step 0 of episode 1'):
+    trainer.observe(observation(trainer), outcome(7))
+    with pytest.raises(TrainingDivergedError, match=r'critic_loss.* is nan.*step 7 of episode 1'):
         trainer.learn()

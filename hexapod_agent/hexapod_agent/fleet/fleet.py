@@ -6,9 +6,8 @@
 from collections.abc import Callable, Sequence
 from functools import partial
 
-from hexapod_sim.task import Outcome, episode_seed
+from hexapod_sim.task import episode_seed
 
-from hexapod_agent.env import Observation
 from hexapod_agent.fleet.crew import Crew, Job
 from hexapod_agent.fleet.learners import Learners
 from hexapod_agent.fleet.robots import Robots
@@ -32,6 +31,7 @@ class Fleet:
         self._robots, self._learners, self._crew = robots, learners, crew
         self._free = list(range(places))[::-1]
         self._seats: list[Seat] = []
+        self._periods = 0
         self.steps = 0
         self.stopwatch = Stopwatch()
 
@@ -51,27 +51,41 @@ class Fleet:
     def _admit(self, take: Callable[[], Run | None]) -> None:
         """Give the free places to the runs that come next."""
         while self._free and (run := take()) is not None:
-            place = self._free.pop()
-            observation, outcome = self._reset(place, run)
-            seat = Seat(place, run, observation, outcome)
+            seat = Seat(self._free.pop(), run)
             self._learners.seat(seat)
-            run.trainer.begin_episode(run.trainer.episode)
             self._seats.append(seat)
 
     def _step(self) -> None:
         """Take every robot through one control period."""
+        if self._periods % self._learners.beat == 0:
+            self._begin_episodes()
+        self._periods += 1
+        seats = [seat for seat in self._seats if seat.steps]
         part, timed = self.stopwatch.part, self.stopwatch.timed
         with part('learner'):
-            self._learners.act(self._seats, self._robots.actions)
+            self._learners.act(seats, self._robots.actions)
         with part('cpg'):
             self._robots.command()
         with part('learner'):
-            jobs = [timed('learner', job) for job in self._learners.learn(self._seats)]
+            jobs = [timed('learner', job) for job in self._learners.learn(seats)]
         # The longer jobs first, so that the threads end together.
-        self._crew.run([*jobs, *self._physics(self._seats)])
+        self._crew.run([*jobs, *self._physics(seats)])
         with part('learner'):
             self._learners.collect()
-        self.steps += len(self._seats)
+        self.steps += len(seats)
+
+    def _begin_episodes(self) -> None:
+        """Let every seat that waits begin its next episode."""
+        for seat in self._seats:
+            if seat.waits:
+                seat.waits = False
+                seat.attempt(partial(self._begin_episode, seat))
+
+    def _begin_episode(self, seat: Seat) -> None:
+        trainer = seat.trainer
+        seed = episode_seed(trainer.seed, trainer.episode)
+        seat.observation, seat.outcome = self._robots.reset(seat.place, trainer.spec, seed)
+        trainer.begin_episode(trainer.episode)
 
     def _physics(self, seats: Sequence[Seat]) -> list[Job]:
         return [self.stopwatch.timed('physics', partial(self._advance, seat)) for seat in seats]
@@ -89,7 +103,7 @@ class Fleet:
         """Close the episodes that are over; return whether a place has become free."""
         seated = len(self._seats)
         for seat in list(self._seats):
-            if seat.fault is None and (seat.outcome.terminated or seat.outcome.truncated):
+            if seat.steps and (seat.outcome.terminated or seat.outcome.truncated):
                 seat.attempt(partial(self._end_episode, seat))
             if seat.fault is not None:
                 seat.run.failed(seat.fault)
@@ -103,16 +117,8 @@ class Fleet:
         return len(self._seats) < seated
 
     def _end_episode(self, seat: Seat) -> None:
-        """Close one run's episode and begin its next one, if it has one."""
-        trainer, run = seat.trainer, seat.run
-        if run.saves_next:
+        """Close one run's episode; its next one, if it has one, is to begin."""
+        if seat.run.saves_next:
             self._learners.settle(seat)
-        run.episode_ended(trainer.end_episode(seat.observation, seat.outcome))
-        if trainer.episode < run.episodes:
-            seat.observation, seat.outcome = self._reset(seat.place, run)
-            trainer.begin_episode(trainer.episode)
-
-    def _reset(self, place: int, run: Run) -> tuple[Observation, Outcome]:
-        trainer = run.trainer
-        seed = episode_seed(trainer.seed, trainer.episode)
-        return self._robots.reset(place, trainer.spec, seed)
+        seat.run.episode_ended(seat.trainer.end_episode(seat.observation, seat.outcome))
+        seat.waits = True

@@ -17,6 +17,9 @@ from hexapod_agent.fleet.seat import Seat
 class Learners(Protocol):
     """Who chooses the actions of a fleet and learns from what they earn."""
 
+    beat: int
+    """Episodes begin at multiples of so many periods, where that lets all learn at once."""
+
     def seat(self, seat: Seat) -> None:
         """Take over the networks of a trainer that takes its seat."""
 
@@ -27,7 +30,7 @@ class Learners(Protocol):
         """Show each trainer its observation, and write what it does to its row of actions."""
 
     def learn(self, seats: Sequence[Seat]) -> list[Job]:
-        """Begin a gradient step; return jobs that are still to be done here, in any order."""
+        """Begin the gradient steps that are due; return jobs that are left, for any order."""
 
     def collect(self) -> None:
         """Wait for the gradient step, and tell the trainers what it saw."""
@@ -38,6 +41,8 @@ class SeparateLearners:
 
     There, stacked products are no faster than one after another, and not the same to the last bit.
     """
+
+    beat = 1
 
     def __init__(self, crew: Crew) -> None:
         self._crew = crew

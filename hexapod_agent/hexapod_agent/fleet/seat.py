@@ -4,7 +4,7 @@
 """A run's place in a fleet, and what the fleet asks of a run."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -45,21 +45,28 @@ class Seat:
     Attributes:
         place: Its number in every batch.
         run: Who sits there.
-        observation: What its robot observes now (size,).
-        outcome: What its last step earned.
+        observation: What its robot observes now (size,); undefined while it waits.
+        outcome: What its last step earned; likewise.
+        waits: Whether its next episode has not begun yet.
         fault: Why the run cannot go on; no job is attempted for it any more.
     """
 
     place: int
     run: Run
-    observation: NDArray[np.float32]
-    outcome: Outcome
+    observation: NDArray[np.float32] = field(init=False)
+    outcome: Outcome = field(init=False)
+    waits: bool = True
     fault: Exception | None = None
 
     @property
     def trainer(self) -> Trainer:
         """The run's learner and its bookkeeping."""
         return self.run.trainer
+
+    @property
+    def steps(self) -> bool:
+        """Whether its robot is in an episode and goes on."""
+        return self.fault is None and not self.waits
 
     def attempt(self, job: Callable[[], None]) -> None:
         """Do something for this run alone; a failure of its training is its own fault."""

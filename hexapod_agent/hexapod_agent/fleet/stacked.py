@@ -37,6 +37,7 @@ class StackedLearners:
         self, config: AgentConfig, observation_size: int, places: int, crew: Crew, device: str
     ) -> None:
         ddpg, wide = config.ddpg, torch.float32
+        self.beat = ddpg.update_every
         narrow = torch.bfloat16 if config.training.precision == 'bfloat16' else None
         self._crew = crew
         self._device = torch.device(device)
@@ -75,21 +76,27 @@ class StackedLearners:
                 actions[seat.place] = seat.trainer.explore(outputs[seat.place])
 
     def learn(self, seats: Sequence[Seat]) -> list[Job]:
-        """Draw a batch for each trainer that has one, and send the update to the device."""
-        ready = [seat for seat in seats if seat.fault is None and seat.trainer.ready]
-        if not ready:
+        """Take the gradient steps that are due; the last one is still under way at the return."""
+        due = [seat for seat in seats if seat.fault is None and seat.trainer.due]
+        if not due:
             return []
-        places = tuple(seat.place for seat in ready)
+        places = tuple(seat.place for seat in due)
         if places != self._learning:
             self._learning = places
             self._stack.learn_only(places)
-        self._crew.run(partial(self._draw, seat) for seat in ready)
+        for _ in range(self.beat):
+            self.collect()
+            self._update(due)
+        return []
+
+    def _update(self, seats: list[Seat]) -> None:
+        """Draw a batch for each trainer, and send the update to the device."""
+        self._crew.run(partial(self._draw, seat) for seat in seats)
         for here, there in zip(
             vars(self._drawn).values(), vars(self._stack.batch).values(), strict=True
         ):
             there.copy_(here, non_blocking=True)
-        self._pending = ready, self._stack.update()
-        return []
+        self._pending = seats, self._stack.update()
 
     def _draw(self, seat: Seat) -> None:
         trainer = seat.trainer

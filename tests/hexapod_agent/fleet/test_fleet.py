@@ -3,9 +3,13 @@
 
 """A fleet gives each run the numbers that it gets alone."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import torch
+from hexapod_agent.fleet.robots import Robots
+from hexapod_agent.fleet.stacked import StackedLearners
 from hexapod_agent.training import TrainingDivergedError
 
 RUNS = (('ABCDEFG', 3), ('', 4), ('BC', 5))
@@ -62,6 +66,31 @@ def test_a_stack_learns_what_its_runs_learn_alone(small_config, new_run, train_a
         for name, array in alone.trainer.agent.actor_parameters.arrays.items():
             ours = run.trainer.agent.actor_parameters.arrays[name]
             torch.testing.assert_close(ours, array, rtol=1e-2, atol=1e-3)
+
+
+def test_agents_of_a_stack_learn_at_once_after_one_of_them_fell(
+    small_config, new_run, train_fleet, monkeypatch
+):
+    runs = [new_run(small_config, '', seed) for seed in (1, 2)]
+    advance, update = Robots.advance, StackedLearners._update
+    learning = []
+
+    def advance_to_a_fall(robots, place):
+        outcome = advance(robots, place)
+        falls = outcome.step == 5 and place == 0 and not runs[0].summaries
+        return replace(outcome, terminated=True, cause='fell') if falls else outcome
+
+    def counted_update(stack, seats):
+        learning.append(len(seats))
+        update(stack, seats)
+
+    monkeypatch.setattr(Robots, 'advance', advance_to_a_fall)
+    monkeypatch.setattr(StackedLearners, '_update', counted_update)
+    train_fleet(runs, places=2, stacked=True)
+    assert [run.summaries[0].steps for run in runs] == [5, 40]
+    # A batch is 16. The robot that fell begins again with the next group of 8: after 24 periods
+    # the other has 23 transitions and it has 20. It is through after 48, the other after 80.
+    assert learning == [2] * 8 * 4 + [1] * 8 * 4
 
 
 def test_a_run_that_diverges_leaves_the_others_alone(
