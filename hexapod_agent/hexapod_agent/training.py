@@ -17,7 +17,7 @@ from hexapod_sim.robot import CONTROL_PERIOD_NS
 from hexapod_sim.task import Outcome
 from numpy.typing import NDArray
 
-from hexapod_agent.config import AgentConfig
+from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.ddpg import Ddpg
 from hexapod_agent.noise import OrnsteinUhlenbeckNoise
 from hexapod_agent.observation import ACTION_SIZE, ObservationSpec
@@ -40,9 +40,18 @@ class Trainer:
         agent: Networks and their update.
         episode: Episodes that are complete; a checkpoint is taken between two.
         returns: Return of each complete episode.
+
+    Raises:
+        ConfigError: No episode is as long as a group of updates.
     """
 
     def __init__(self, spec: ObservationSpec, config: AgentConfig, seed: int) -> None:
+        steps, group = config.task.time_limit_steps, config.ddpg.update_every
+        if group > steps:
+            raise ConfigError(
+                f'ddpg.update_every is {group}, expected at most task.time_limit_steps, {steps}: '
+                'nothing would be learned'
+            )
         self.spec, self.config, self.seed = spec, config, seed
         # One thread: a sum split over threads is not the same to the last bit.
         torch.set_num_threads(1)

@@ -30,7 +30,7 @@ ALWAYS = {'/joint_states', '/cpg/state', '/line_offset', '/step_outcome'}
 def short(tmp_path) -> str:
     """Return a configuration of short episodes and small batches."""
     path = tmp_path / 'short.yaml'
-    path.write_text('task: {time_limit_steps: 60}\nddpg: {batch_size: 32}\n')
+    path.write_text('task: {time_limit_steps: 60}\nddpg: {batch_size: 32, update_every: 6}\n')
     return str(path)
 
 

@@ -23,7 +23,7 @@ from rclpy.parameter import Parameter
 pytestmark = pytest.mark.graph
 SMALL = """
 task: {time_limit_steps: 40}
-ddpg: {batch_size: 16}
+ddpg: {batch_size: 16, update_every: 4}
 actor: {hidden: [16, 12]}
 critic: {hidden: [16, 12]}
 """

@@ -34,7 +34,7 @@ class CutError(RuntimeError):
 def goal(tmp_path: Path) -> Callable[..., TrainRun.Goal]:
     """Return a function that makes the goal of a short run, a checkpoint every two episodes."""
     (tmp_path / 'short.yaml').write_text(
-        'task: {time_limit_steps: 20}\nddpg: {batch_size: 8}\n'
+        'task: {time_limit_steps: 20}\nddpg: {batch_size: 8, update_every: 4}\n'
         f'actor: {{hidden: [16, 16]}}\ncritic: {{hidden: [16, 16]}}\n'
         f'training: {{checkpoint_every: {EVERY}}}\n'
     )

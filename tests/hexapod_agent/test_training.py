@@ -6,7 +6,7 @@
 import numpy as np
 import pytest
 import torch
-from hexapod_agent.config import AgentConfig
+from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.train import train_episode
@@ -62,6 +62,12 @@ def test_updates_come_in_groups_and_as_often_as_steps(small_config, update_every
         trainer.observe(observation(trainer), outcome(step))
         due.append(trainer.due)
     assert due == [*[0] * (update_every - 1), update_every] * (28 // update_every)
+
+
+def test_episodes_shorter_than_a_group_are_refused():
+    config = AgentConfig.from_mapping({'task': {'time_limit_steps': 20}}, 'a test')
+    with pytest.raises(ConfigError, match=r'update_every is 24.* at most.* 20: nothing'):
+        Trainer(ObservationSpec(''), config, 1)
 
 
 def test_window_of_the_average_return(make_trainer):

@@ -34,7 +34,7 @@ SMALL = {
     'task': {'time_limit_steps': 40},
     'actor': {'hidden': [16, 12]},
     'critic': {'hidden': [16, 12]},
-    'ddpg': {'batch_size': 16, 'buffer_size': 5000},
+    'ddpg': {'batch_size': 16, 'buffer_size': 5000, 'update_every': 8},
     'training': {'checkpoint_every': 2, 'window': 2},
 }
 

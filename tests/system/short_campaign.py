@@ -20,7 +20,7 @@ from hexapod_doe.designs.plan_file import read_plan
 
 SHORT = """
 task: {time_limit_steps: 10}
-ddpg: {batch_size: 8, buffer_size: 1000}
+ddpg: {batch_size: 8, buffer_size: 1000, update_every: 5}
 actor: {hidden: [16, 16]}
 critic: {hidden: [16, 16]}
 training: {checkpoint_every: 2}

@@ -31,7 +31,7 @@ def plan(shell) -> Path:
     line = 'ros2 run hexapod_doe plan --generators C=AB --factors 3 --seed 3 --out plan.csv'
     assert shell.run(line).returncode == 0
     (shell.directory / 'short.yaml').write_text(
-        f'task: {{time_limit_steps: {STEPS}}}\nddpg: {{batch_size: 16}}\n'
+        f'task: {{time_limit_steps: {STEPS}}}\nddpg: {{batch_size: 16, update_every: 8}}\n'
     )
     return shell.directory / 'plan.csv'
 

@@ -40,7 +40,7 @@ def plan(shell) -> Path:
     """Write a plan of two rows and the configuration that makes them short."""
     (shell.directory / 'plan.csv').write_text(PLAN)
     (shell.directory / 'short.yaml').write_text(
-        f'task: {{time_limit_steps: {STEPS}}}\nddpg: {{batch_size: 16}}\n'
+        f'task: {{time_limit_steps: {STEPS}}}\nddpg: {{batch_size: 16, update_every: 8}}\n'
     )
     return shell.directory / 'plan.csv'
 
@@ -77,7 +77,7 @@ def jobs_bag(shell, run_id: str) -> Path:
 
 def test_a_preempted_job_is_not_done_and_goes_on(shell, plan: Path) -> None:
     (shell.directory / 'short.yaml').write_text(
-        f'task: {{time_limit_steps: {8 * STEPS}}}\nddpg: {{batch_size: 16}}\n'
+        f'task: {{time_limit_steps: {8 * STEPS}}}\nddpg: {{batch_size: 16, update_every: 8}}\n'
         'actor: {hidden: [16, 16]}\ncritic: {hidden: [16, 16]}\n'
     )
     long = case(2, episodes=4, every=0)

@@ -26,7 +26,7 @@ BLOCK = 500
 STEPS = 10
 CONFIG = f"""
 task: {{time_limit_steps: {STEPS}}}
-ddpg: {{batch_size: 8, buffer_size: 1000}}
+ddpg: {{batch_size: 8, buffer_size: 1000, update_every: 5}}
 actor: {{hidden: [16, 16]}}
 critic: {{hidden: [16, 16]}}
 training: {{checkpoint_every: 1000}}

@@ -93,7 +93,7 @@ def plan(shell) -> Path:
     line = 'ros2 run hexapod_doe plan --generators C=AB --factors 3 --seed 3 --out plan.csv'
     assert shell.run(line).returncode == 0
     (shell.directory / 'short.yaml').write_text(
-        'task: {time_limit_steps: 60}\nddpg: {batch_size: 16}\n'
+        'task: {time_limit_steps: 60}\nddpg: {batch_size: 16, update_every: 6}\n'
     )
     return shell.directory / 'plan.csv'
 

@@ -10,6 +10,7 @@ from hexapod_doe.studies import learning
 ARGUMENTS = ['--sets', 'C', '--seeds', '1', '--episodes', '2', '--starts', '2']
 CONFIG = """
 task: {time_limit_steps: 8}
+ddpg: {update_every: 4}
 actor: {hidden: [8, 8]}
 critic: {hidden: [8, 8]}
 training: {checkpoint_every: 1}
