@@ -91,6 +91,7 @@ class ManagerNode(Node):
             self._parameter('episodes'), self._parameter('config'), self._parameter('record_every')
         )
         self._failures = FailureLog(self._campaign.directory)
+        self._failures.clear()
         self._workers: dict[str, WorkerPeer] = {}
         self._buried: set[str] = set()
         """Names of local workers that died; the network knows them for a while."""

@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Command line: train the rows of a plan that are due, many at a time, in this one process."""
+"""Command line: train the rows of a plan that are due, many at a time, without the ROS graph."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ from hexapod_agent.observation import ObservationSpec
 from hexapod_doe.campaigns.campaign import Campaign
 from hexapod_doe.campaigns.campaign_lock import campaign_lock
 from hexapod_doe.campaigns.fleet_campaign import FleetCampaign
+from hexapod_doe.campaigns.fleet_processes import train_in_processes
 from hexapod_doe.campaigns.plan_copy import place_plan
+
+_CORES = os.cpu_count() or 1
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -62,23 +65,45 @@ def is_cpu(device: str) -> bool:
 def _run(args: argparse.Namespace) -> int:
     config = AgentConfig.load(args.hyperparameters)
     plan = place_plan(args.plan, args.out)
-    with campaign_lock(plan.resolve().parent, shared=True):
+    directory = plan.resolve().parent
+    with campaign_lock(directory, shared=True):
         campaign = Campaign.open(plan, attempts=1)
         campaign.check_writable()
-        _train(campaign, config, args)
+        due = [row.observations for row in campaign.rows if row.run_id not in campaign.done]
+        processes = args.processes or (_CORES if is_cpu(args.device) else 1)
+        if processes > 1 and due:
+            count, options = min(processes, len(due)), _options(plan, args)
+            for what in train_in_processes(directory, count, options):
+                print(f'run_fleet: {what}', file=sys.stderr)
+            campaign = Campaign.open(plan, attempts=1)
+        elif due:
+            _train(campaign, config, due, args)
     print(f'{len(campaign.done)} of {len(campaign.rows)} runs are in {campaign.directory}')
     return 0 if len(campaign.done) == len(campaign.rows) else 1
 
 
-def _train(campaign: Campaign, config: AgentConfig, args: argparse.Namespace) -> None:
-    """Train what is due."""
-    due = [row.observations for row in campaign.rows if row.run_id not in campaign.done]
-    if not due:
-        return
+def _options(plan: Path, args: argparse.Namespace) -> list[str]:
+    """Return the command line of one of several processes."""
+    names = ('episodes', 'hyperparameters', 'slots', 'threads', 'device')
+    given = {'plan': plan} | {name: getattr(args, name) for name in names}
+    return [
+        text
+        for name, value in given.items()
+        if value is not None
+        for text in (f'--{name}', str(value))
+    ]
+
+
+def _train(
+    campaign: Campaign, config: AgentConfig, due: Sequence[str], args: argparse.Namespace
+) -> None:
+    """Train rows with such sets of observations in this process."""
     episodes = args.episodes or config.training.episodes
-    slots = min(args.slots or (args.threads if is_cpu(args.device) else len(due)), len(due))
+    on_cpu = is_cpu(args.device)
+    threads = args.threads or (1 if on_cpu else _CORES)
+    slots = min(args.slots or (threads if on_cpu else len(due)), len(due))
     with (
-        Crew(args.threads) as crew,
+        Crew(threads) as crew,
         FleetCampaign(campaign, config, episodes, args.device) as rows,
     ):
         build_fleet(config, due, slots, crew, args.device).train(rows.take)
@@ -93,12 +118,18 @@ def _parser() -> argparse.ArgumentParser:
         '--hyperparameters', type=Path, help='YAML file of changes to article.yaml'
     )
     parser.add_argument(
-        '--slots', type=_count,
-        help='runs at a time; default one per thread on the CPU, all rows on another device',
+        '--processes', type=_count,
+        help='default one per core on the CPU, one in all on another device',
     )  # fmt: skip
     parser.add_argument(
-        '--threads', type=_count, default=os.cpu_count() or 1, help='default one per core'
-    )
+        '--slots', type=_count,
+        help='runs at a time in a process; default one per thread on the CPU, all rows on '
+        'another device',
+    )  # fmt: skip
+    parser.add_argument(
+        '--threads', type=_count,
+        help='of a process; default one on the CPU, one per core on another device',
+    )  # fmt: skip
     parser.add_argument(
         '--device', type=_device, default='cpu', help="where the networks are, such as 'cuda'"
     )

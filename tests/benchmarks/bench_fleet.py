@@ -4,7 +4,7 @@
 """A fleet's speed: against a run alone, processes and workers on the same cores; and by part.
 
 Run: `python tests/benchmarks/bench_fleet.py`. All run the configuration of article.yaml with
-two episodes of 140 steps, of which the first, without a full batch, is not timed. Each is timed
+two episodes of 144 steps, whole groups of updates, of which the first, without a full batch, is not timed. Each is timed
 in turn, for several rounds; the best round counts, as other load only ever slows down. On a busy
 machine the processor time of a step is the figure to compare.
 
@@ -45,7 +45,7 @@ from rich.table import Table
 
 CORES = os.cpu_count() or 1
 OBSERVATIONS = 'ABCDE'
-STEPS, EPISODES, ROUNDS = 140, 2, 3
+STEPS, EPISODES, ROUNDS = 144, 2, 3
 ROWS = {'cpu': (1, 4, 32)}
 ROWS_ON_DEVICE = (1, 32, 320)
 CHANGES = {'task': {'time_limit_steps': STEPS}, 'ddpg': {'buffer_size': 10_000}}
@@ -95,10 +95,10 @@ def one_run(seed: int = 1) -> Speed:
     return Speed(STEPS, time.perf_counter() - wall, time.process_time() - cpu)
 
 
-def processes() -> Speed:
-    """Runs alone, a process per core, all at once."""
+def processes(one: Callable[[int], Speed]) -> Speed:
+    """The same in a process per core, all at once."""
     with multiprocessing.get_context('spawn').Pool(CORES) as pool:
-        return Speed.together(pool.map(one_run, range(CORES), chunksize=1))
+        return Speed.together(pool.map(one, range(CORES), chunksize=1))
 
 
 def session_cpu_s(session: int) -> float:
@@ -191,8 +191,13 @@ class TimedRun:
         raise error
 
 
+def one_fleet(seed: int) -> Speed:
+    """One of the processes of `run_fleet`."""
+    return fleet(1)[0]
+
+
 def fleet(rows: int, device: str = 'cpu') -> tuple[Speed, dict[str, float]]:
-    """A fleet of so many rows at a time, a thread per core; with the shares of its time."""
+    """A fleet of so many rows at a time in this process; with the shares of its time."""
     wall = cpu = 0.0
 
     def start_clock() -> None:
@@ -200,7 +205,7 @@ def fleet(rows: int, device: str = 'cpu') -> tuple[Speed, dict[str, float]]:
         wall, cpu = time.perf_counter(), time.process_time()
         made.stopwatch = Stopwatch()
 
-    with Crew(CORES) as crew:
+    with Crew(1 if device == 'cpu' else CORES) as crew:
         runs = [TimedRun(seed, start_clock) for seed in range(rows)]
         config = runs[0].trainer.config
         made = build_fleet(config, [OBSERVATIONS], rows, crew, device)
@@ -217,9 +222,9 @@ def against_others(console: Console) -> None:
         workers = Workers(path)
         ways: dict[str, Callable[[], Speed]] = {
             'one run after another': one_run,
-            f'{CORES} processes': processes,
+            f'{CORES} processes': partial(processes, one_run),
             f'{CORES} workers on the graph': workers.speed,
-            f'run_fleet, {CORES} threads': lambda: fleet(CORES)[0],
+            'run_fleet': partial(processes, one_fleet),
         }
         rounds = [{name: way() for name, way in ways.items()} for _ in range(ROUNDS)]
         workers.close()
@@ -228,7 +233,7 @@ def against_others(console: Console) -> None:
     table = Table(
         f'{CORES} cores', 'steps/s', 'runs/hour', 'fleet is', 'cpu ms/step', 'fleet takes'
     )
-    best = rates[f'run_fleet, {CORES} threads'], costs[f'run_fleet, {CORES} threads']
+    best = rates['run_fleet'], costs['run_fleet']
     for name, rate in rates.items():
         table.add_row(
             name, f'{rate:.0f}', f'{rate * 3600 / RUN_STEPS:.2f}', f'{best[0] / rate:.2f} x',

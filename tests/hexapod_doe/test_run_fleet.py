@@ -3,6 +3,7 @@
 
 """The command line `run_fleet`: a campaign's bags, going on after a crash, and what it refuses."""
 
+import os
 import signal
 import subprocess
 import sys
@@ -59,7 +60,7 @@ def plan_file(hyperparameters) -> Path:
 def arguments(hyperparameters, plan_file):
     def make(out: Path, **options: object) -> list[str]:
         given = {'plan': plan_file, 'out': out, 'hyperparameters': hyperparameters}
-        given |= {'episodes': EPISODES, 'threads': 2} | options
+        given |= {'episodes': EPISODES, 'processes': 1, 'threads': 2} | options
         return [text for name, value in given.items() for text in (f'--{name}', str(value))]
 
     return make
@@ -179,6 +180,49 @@ def test_failed_row_is_told_and_tried_again(arguments, tmp_path, monkeypatch):
 
 def diverge(trainer: Trainer) -> None:
     raise TrainingDivergedError('the loss is nan')
+
+
+def test_row_that_fails_is_tried_by_one_of_the_processes(arguments, tmp_path, capsys):
+    settings = tmp_path / 'steep.yaml'
+    settings.write_text(yaml.safe_dump(SMALL | {'ddpg': SMALL['ddpg'] | {'reward_scale': 1e30}}))
+    assert run_fleet.main(arguments(tmp_path, processes=2, hyperparameters=settings)) == 1
+    reasons = read_failures(tmp_path)
+    assert len(reasons) == 4
+    told = capsys.readouterr().err
+    for run_id, why in reasons.items():
+        assert len(why) == 1
+        assert f'{run_id} failed: {why[0]}' in told
+
+
+def test_process_that_breaks_down_is_named_and_its_row_stays_due(arguments, digests, tmp_path):
+    given = arguments(tmp_path, processes=2, threads=1)
+    command = [sys.executable, '-m', 'hexapod_doe.run_fleet', *given]
+    parent = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    while not (tmp_path / 'runs').is_dir() or not list(tmp_path.glob('runs/*.partial')):
+        time.sleep(0.01)
+    (first, *_) = children_of(parent.pid)
+    os.kill(first, signal.SIGKILL)
+    told = parent.communicate(timeout=120.0)[1]
+    assert 'ended with status -9, see' in told
+    assert run_fleet.main(given) == 0
+    assert campaign_digests(tmp_path) == digests
+
+
+def test_interrupted_processes_end_with_their_parent(arguments, digests, tmp_path):
+    given = arguments(tmp_path, processes=2, threads=1)
+    parent = subprocess.Popen([sys.executable, '-m', 'hexapod_doe.run_fleet', *given])
+    while len(children := children_of(parent.pid)) < 2:
+        time.sleep(0.01)
+    time.sleep(1.0)
+    parent.send_signal(signal.SIGINT)
+    assert parent.wait(30.0) == 130
+    assert not any(Path(f'/proc/{child}').exists() for child in children)
+    assert run_fleet.main(given) == 0
+    assert campaign_digests(tmp_path) == digests
+
+
+def children_of(process: int) -> list[int]:
+    return [int(n) for n in Path(f'/proc/{process}/task/{process}/children').read_text().split()]
 
 
 @pytest.mark.parametrize(

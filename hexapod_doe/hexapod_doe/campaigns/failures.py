@@ -14,11 +14,13 @@ _COLUMNS = ('time', 'run_id', 'worker', 'reason')
 
 
 class FailureLog:
-    """The failures of one manager, on the disk at once."""
+    """The failures of those who are at a campaign now, on the disk at once."""
 
     def __init__(self, directory: Path) -> None:
-        """Begin without failures: the rows of an earlier manager are tried again."""
         self._path = directory / FAILURES_FILE
+
+    def clear(self) -> None:
+        """Forget all: rows that failed earlier are tried again."""
         self._path.unlink(missing_ok=True)
 
     def add(self, run_id: str, worker: str, reason: str) -> None:
@@ -32,12 +34,17 @@ class FailureLog:
             writer = csv.writer(file)
             if fresh:
                 writer.writerow(_COLUMNS)
-            now = datetime.now(UTC).isoformat(timespec='seconds')
+            now = datetime.now(UTC).isoformat(timespec='microseconds')
             writer.writerow((now, run_id, worker, reason))
 
 
-def read_failures(directory: Path) -> dict[str, list[str]]:
-    """Return the reasons by run id; rows that were done later are among them."""
+def read_failures(directory: Path, since: datetime | None = None) -> dict[str, list[str]]:
+    """Return the reasons by run id; rows that were done later are among them.
+
+    Args:
+        directory: the campaign's folder.
+        since: when the first one to read happened; all of them if None.
+    """
     reasons: dict[str, list[str]] = {}
     try:
         file = (directory / FAILURES_FILE).open(newline='', encoding='utf-8')
@@ -45,5 +52,7 @@ def read_failures(directory: Path) -> dict[str, list[str]]:
         return reasons
     with file:
         for row in csv.DictReader(file):
+            if since is not None and datetime.fromisoformat(row['time']) < since:
+                continue
             reasons.setdefault(row['run_id'], []).append(row['reason'])
     return reasons

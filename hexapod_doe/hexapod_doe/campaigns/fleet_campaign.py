@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
+from datetime import UTC, datetime
 from types import TracebackType
 from typing import Self
 
@@ -16,7 +17,7 @@ from hexapod_doe.bags.bag_state import is_complete
 from hexapod_doe.campaigns.campaign import Campaign, Row
 from hexapod_doe.campaigns.campaign_lock import row_lock
 from hexapod_doe.campaigns.dashboard import Dashboard
-from hexapod_doe.campaigns.failures import FailureLog
+from hexapod_doe.campaigns.failures import FailureLog, read_failures
 from hexapod_doe.campaigns.fleet_row import FleetRow
 from hexapod_doe.campaigns.page_writer import PageWriter
 from hexapod_doe.errors import CampaignError
@@ -36,7 +37,8 @@ class FleetCampaign:
         self._page = PageWriter(campaign.directory, self._dashboard.log)
         self._locks: dict[str, ExitStack] = {}
         self._elsewhere: set[str] = set()
-        self._failures: FailureLog | None = None
+        self._failures = FailureLog(campaign.directory)
+        self._began = datetime.now(UTC)
 
     def __enter__(self) -> Self:
         return self
@@ -57,12 +59,13 @@ class FleetCampaign:
             BagError: its bag cannot be written.
         """
         elsewhere = []
+        in_vain = read_failures(self._campaign.directory, self._began)
         while (row := self._campaign.take(_NAME)) is not None:
             if not self._lock(row):
                 elsewhere.append(row)
-            elif is_complete(row.bag):  # another process finished it just now
+            elif is_complete(row.bag) or row.run_id in in_vain:  # another process was at it
                 self._locks.pop(row.run_id).close()
-                self._campaign.complete(row)
+                self._campaign.complete(row, *in_vain.get(row.run_id, ())[-1:])
             else:
                 break
         for each in elsewhere:  # due again, should that process leave it
@@ -104,7 +107,6 @@ class FleetCampaign:
         if not done:
             reason = campaign.reasons[row.run_id][-1]
             text = f'{row.run_id} failed: {reason}'
-            self._failures = self._failures or FailureLog(campaign.directory)
             self._failures.add(row.run_id, _NAME, reason)
         self._dashboard.end(_place(row), text, done=done)
         self._page.refresh()

@@ -7,17 +7,14 @@ from __future__ import annotations
 
 import os
 import shlex
-import signal
-import subprocess
 import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from hexapod_doe.campaigns.leash import leashed
+from hexapod_doe.campaigns import children
 
 LIFELINE = 'HEXAPOD_LIFELINE'
 """Environment variable that tells a worker to end when its standard input does."""
-_STOP_S = 8.0  # all of them together; the manager's own end is limited, too
 _SHORT_LIFE_S = 10.0
 _LONGEST_PAUSE_S = 30.0
 
@@ -27,7 +24,7 @@ class _Place:
     """The worker that runs under a number, or that is about to."""
 
     first_name: str
-    process: subprocess.Popen[bytes] | None = None
+    process: children.Child | None = None
     lives: int = 0
     """How often a worker was started here."""
     began: float = 0.0
@@ -93,29 +90,19 @@ class LocalWorkers:
         """End a worker at once, if it is one of these; `revive` starts it again."""
         for place in self._places:
             if place.name == name and place.process is not None:
-                _kill_group(place.process)
+                children.kill(place.process)
                 return True
         return False
 
     def stop(self) -> None:
         """Ask every worker to end, and end those that have not after a while."""
-        processes = [place.process for place in self._places if place.process is not None]
-        for process in processes:
-            if process.poll() is None:
-                process.send_signal(signal.SIGINT)
-        deadline = time.monotonic() + _STOP_S
-        for process in processes:
-            try:
-                process.wait(max(deadline - time.monotonic(), 0.0))
-            except subprocess.TimeoutExpired:
-                _kill_group(process)
-                process.wait()
+        children.stop(place.process for place in self._places if place.process is not None)
 
     def _bury(self, place: _Place) -> int:
         """Clear what a dead worker leaves, and make ready for the next; return its status."""
         process, place.process = place.process, None
         assert process is not None
-        _kill_group(process)  # what it had started itself
+        children.kill(process)  # what it had started itself
         short = time.monotonic() - place.began < _SHORT_LIFE_S
         place.short_lives = place.short_lives + 1 if short else 0
         place.began = time.monotonic()
@@ -126,23 +113,6 @@ class LocalWorkers:
 
     def _start(self, place: _Place) -> None:
         place.lives += 1
-        # One worker per core: the mathematics of a worker must not spread over the others'.
-        environment = os.environ | {'OMP_NUM_THREADS': '1', 'MKL_NUM_THREADS': '1', LIFELINE: '1'}
-        with self._log(place).open('ab') as log:
-            place.process = subprocess.Popen(
-                leashed(shlex.split(self._command.format(name=place.name))),
-                stdin=subprocess.PIPE,  # never written to: it ends with this process
-                stdout=log,
-                stderr=subprocess.STDOUT,
-                env=environment,
-                start_new_session=True,  # Ctrl-C reaches the manager, which ends them in order
-            )
+        command = shlex.split(self._command.format(name=place.name))
+        place.process = children.start(command, self._log(place), {LIFELINE: '1'})
         place.began = time.monotonic()
-
-
-def _kill_group(process: subprocess.Popen[bytes]) -> None:
-    """End a process and whatever it started; its session is its own."""
-    try:
-        os.killpg(process.pid, signal.SIGKILL)
-    except ProcessLookupError:  # all of it has ended
-        return

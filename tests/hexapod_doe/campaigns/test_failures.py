@@ -3,6 +3,8 @@
 
 """Failed tries outlive the manager that saw them, and no more than that one."""
 
+from datetime import UTC, datetime, timedelta
+
 from hexapod_doe.campaigns.failures import FailureLog, read_failures
 
 
@@ -20,5 +22,12 @@ def test_reasons_come_back_in_their_order(tmp_path):
 
 def test_next_manager_begins_without_failures(tmp_path):
     FailureLog(tmp_path).add('case01', '/worker_1', 'disk')
-    FailureLog(tmp_path)
+    FailureLog(tmp_path).clear()
     assert read_failures(tmp_path) == {}
+
+
+def test_failures_of_earlier_tries_can_be_left_out(tmp_path):
+    FailureLog(tmp_path).add('case01', '/worker_1', 'disk')
+    now = datetime.now(UTC)
+    assert read_failures(tmp_path, now - timedelta(minutes=1)) == {'case01': ['disk']}
+    assert read_failures(tmp_path, now + timedelta(minutes=1)) == {}

@@ -130,7 +130,7 @@ def test_stopping_does_not_wait_for_one_that_hangs(folder, workers, monkeypatch)
     pids = [until(lambda n=n: identity(folder / f'worker_{n}')) for n in (1, 2)]
     for pid in pids:
         os.kill(pid, signal.SIGSTOP)
-    monkeypatch.setattr('hexapod_doe.campaigns.local_workers._STOP_S', 0.5)
+    monkeypatch.setattr('hexapod_doe.campaigns.children._STOP_S', 0.5)
     workers.stop()
     assert not any(alive(pid) for pid in pids)
 
