@@ -4,9 +4,9 @@
 """A fleet's speed: against a run alone, processes and workers on the same cores; and by part.
 
 Run: `python tests/benchmarks/bench_fleet.py`. All run the configuration of article.yaml with
-two episodes of 144 steps, whole groups of updates, of which the first, without a full batch, is not timed. Each is timed
-in turn, for several rounds; the best round counts, as other load only ever slows down. On a busy
-machine the processor time of a step is the figure to compare.
+two episodes of 144 steps, whole groups of updates. The first, without a full batch, is not timed.
+Each is timed in turn, for several rounds; the best round counts, as other load only ever slows
+down. On a busy machine the processor time of a step is the figure to compare.
 
 With an accelerator, `--device cuda` times fleets of 1, 32 and 320 rows on it instead.
 """
