@@ -67,7 +67,6 @@ def _no_node_outlives_its_test(request: pytest.FixtureRequest) -> Iterator[None]
     """
     yield
     if request.node.get_closest_marker('graph'):
-        gc.unfreeze()  # real time leaves what is there out of collections
         gc.collect()
 
 

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import faulthandler
+import gc
 import sys
 from collections.abc import Callable, Sequence
 
@@ -42,6 +43,9 @@ def run(make: Callable[[], Node | Sequence[Node]], args: Sequence[str] | None = 
     try:
         made = make()
         nodes = [made] if isinstance(made, Node) else list(made)
+        # A full garbage collection looks at every object of every library, for many milliseconds
+        # of a control period. What is there now stays, so it is left out from here on.
+        gc.freeze()
         status = spin(nodes)
     except (KeyboardInterrupt, ExternalShutdownException):
         pass

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import gc
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -68,9 +67,6 @@ class Ticker:
         self._period_ns = period_ns
         self._simulated = bool(node.get_parameter('use_sim_time').value)
         self._clock = node.get_clock() if self._simulated else STEADY
-        # A full garbage collection looks at every object of every library: many milliseconds. What
-        # is there now stays, so it is left out from here on.
-        gc.freeze()
         self._phase_ns = phase_ns
         self._tries = 0
         self._await_phase()
