@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""One run on the node graph, in training or play: subscribe, reset, step in lock-step, record."""
+"""One run on the node graph, in training or play: its episodes, its bag and what it reports."""
 
 from __future__ import annotations
 
@@ -10,30 +10,25 @@ from array import array
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import numpy as np
 import yaml
-from hexapod_cpg.mapping import command_from_action
-from hexapod_cpg.messages import command_to_message
 from hexapod_interfaces.action import TrainRun
-from hexapod_interfaces.msg import CpgCommand, EpisodeResult, StepOutcome
+from hexapod_interfaces.msg import EpisodeResult
 from hexapod_node.conditions import until_true
 from hexapod_node.coroutines import STEADY
-from hexapod_node.lock_step import LockStep
 from hexapod_node.matching import listening_nodes, unheard
 from hexapod_node.stamps import time_message
 from hexapod_node.subscriptions import subscribed_topics
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from hexapod_sim.task import episode_seed
-from numpy.typing import NDArray
 
 from hexapod_agent import run_checkpoint
 from hexapod_agent.checkpoint import save
 from hexapod_agent.config import AgentConfig
+from hexapod_agent.control_loop import OUTCOME, ControlLoop
 from hexapod_agent.event_log import EventLog
-from hexapod_agent.messages import decode, message_class, outcome_from_message
-from hexapod_agent.observation import ACTION_SIZE, CHANNELS, ObservationSpec
+from hexapod_agent.observation import CHANNELS, ObservationSpec
 from hexapod_agent.peers import PeerError
 from hexapod_agent.player import Agent
 from hexapod_agent.provenance import provenance
@@ -45,9 +40,8 @@ if TYPE_CHECKING:
     from hexapod_agent.agent_node import AgentNode
 
 _LIFE_S = 1.0
-_OUTCOME = 'step_outcome'
 # What a sampled episode holds beside every sensor topic.
-_PROTOCOL_TOPICS = (_OUTCOME, 'odom', 'cpg/command', 'joint_trajectory', 'clock')
+_PROTOCOL_TOPICS = (OUTCOME, 'odom', 'cpg/command', 'joint_trajectory', 'clock')
 _SENSOR_TOPICS = tuple(topic for channel in CHANNELS for topic in channel.topics)
 
 
@@ -69,34 +63,22 @@ class GraphRun:
         self._config = config
         self._agent = agent
         self._events: EventLog | None = None
-        self._command = CpgCommand()
+        self._loop = ControlLoop(node, spec, config)
         self._episode = 0
-        self._periods = 0
         self._last_ns = 0
         """End of the episodes that were carried over; simulated time goes on from there."""
-        self._action = np.zeros(ACTION_SIZE, dtype=np.float32)
-        # The treatment: these topics and no other sensor.
-        topics = {
-            topic: message_class(channel.message_type)
-            for channel in spec.channels
-            for topic in channel.topics
-        }
-        self._lock_step = LockStep(
-            node, topics | {_OUTCOME: StepOutcome}, CONTROL_PERIOD_NS, node.timeout_s
-        )
-
         self._life = node.create_timer(_LIFE_S, self._give_sign_of_life, clock=STEADY)
 
     def destroy(self) -> None:
         """Unsubscribe from every topic of the run, and close its curves."""
         self._node.destroy_timer(self._life)
-        self._lock_step.destroy()
+        self._loop.destroy()
         if self._events is not None:
             self._events.close()
 
     def progress(self) -> dict[str, object]:
         """Return what the diagnostics show."""
-        counts = vars(self._lock_step.counts)
+        counts = vars(self._loop.counts)
         return {'run_id': self._goal.run_id, 'episode': self._episode, **counts}
 
     async def execute(self) -> TrainRun.Result:
@@ -161,56 +143,22 @@ class GraphRun:
         sampled = bool(self._goal.bag) and every > 0 and (episode + 1) % every == 0
         if sampled:
             await peers.record_episode(episode, enable=True)
-        self._lock_step.stop()
-        self._lock_step.counts.reset()
+        self._loop.make_ready()
         self._agent.begin_episode(episode)
-        self._action = np.zeros(ACTION_SIZE, dtype=np.float32)
         listeners = functools.partial(self._listeners, sampled)
         await self._until_heard(listeners)
         seed = episode_seed(self._goal.seed, episode)
         start_ns = await peers.begin_episode(seed, listeners, self._last_ns + CONTROL_PERIOD_NS)
-        self._lock_step.start(start_ns)
-        last_ns = await self._step_until_end(start_ns)
+        last_ns = await self._loop.run_episode(self._agent, start_ns)
         if sampled:
             await peers.record_episode(episode, enable=False, last_ns=last_ns)
         self._report(last_ns)
-
-    async def _step_until_end(self, stamp_ns: int) -> int:
-        """Observe, act and learn once per period; return the stamp of the last one."""
-        agent = self._agent
-        while True:
-            messages = await self._lock_step.next_period()
-            outcome = outcome_from_message(messages[_OUTCOME])
-            observation = self._observe(messages)
-            if outcome.terminated or outcome.truncated:
-                agent.end_episode(observation, outcome)
-                return stamp_ns
-            self._action = agent.observe(observation, outcome)
-            self._publish_command(stamp_ns)
-            agent.learn()  # while the pattern generator and the sim are at work
-            stamp_ns += CONTROL_PERIOD_NS
-            self._periods += 1
-
-    def _observe(self, messages: Mapping[str, Any]) -> NDArray[Any]:
-        readings: dict[str, NDArray[Any]] = {}
-        for channel in self._spec.channels:
-            if channel.topics:
-                readings.update(decode(channel, messages))
-        return self._spec.assemble(readings, self._action)
-
-    def _publish_command(self, stamp_ns: int) -> None:
-        command = command_from_action(
-            self._action, self._config.cpg.reading, self._config.cpg.ranges
-        )
-        command_to_message(command, self._command)
-        self._command.header.stamp = time_message(stamp_ns)
-        self._node.command_publisher.publish(self._command)
 
     def _listeners(self, sampled: bool) -> dict[str, int]:
         """Return how many subscriptions each topic must have before the episode begins."""
         resolve = self._node.resolve_topic_name
         listeners = {resolve('joint_trajectory'): 1, resolve('cpg/command'): 1}
-        listeners |= dict.fromkeys(self._lock_step.topics, 1)
+        listeners |= dict.fromkeys(self._loop.topics, 1)
         if self._goal.bag:
             listeners[resolve('episode_result')] = 1
         if sampled:
@@ -271,7 +219,7 @@ class GraphRun:
             mean_q=summary.mean_q,
             saturated_share=summary.saturated_share,
             updates=summary.updates,
-            **vars(self._lock_step.counts),
+            **vars(self._loop.counts),
         )
         result.header.stamp = time_message(last_ns)
         self._node.result_publisher.publish(result)
@@ -281,7 +229,7 @@ class GraphRun:
                 ended=True,
                 episode_return=summary.episode_return,
                 average_return=summary.average_return,
-                periods=self._periods,
+                periods=self._loop.periods,
             )
         )
 
@@ -289,5 +237,5 @@ class GraphRun:
         """Tell whoever gave the goal that the run goes on."""
         if self._goal_handle.is_active:
             self._goal_handle.publish_feedback(
-                TrainRun.Feedback(episode=self._episode, periods=self._periods)
+                TrainRun.Feedback(episode=self._episode, periods=self._loop.periods)
             )
