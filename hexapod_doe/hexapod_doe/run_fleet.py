@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 import torch
@@ -33,7 +35,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Return 0 if every run is done, 1 if some are not, 2 after an error, 130 if interrupted."""
     args = _parser().parse_args(arguments)
     try:
-        return _run(args)
+        with _interruptible():
+            return _run(args)
     except (ValueError, OSError) as error:  # of the plan, its folder, or the configuration
         print(f'run_fleet: {error}', file=sys.stderr)
         return 2
@@ -60,6 +63,18 @@ def build_fleet(
 def is_cpu(device: str) -> bool:
     """Whether a device is the processor, where learners compute apart."""
     return torch.device(device).type == 'cpu'
+
+
+@contextmanager
+def _interruptible() -> Iterator[None]:
+    """Let SIGINT and SIGTERM interrupt, also in a background job, whose shell has one ignored."""
+    signals = (signal.SIGINT, signal.SIGTERM)
+    before = {each: signal.signal(each, signal.default_int_handler) for each in signals}
+    try:
+        yield
+    finally:
+        for each, handler in before.items():
+            signal.signal(each, handler)
 
 
 def _run(args: argparse.Namespace) -> int:

@@ -208,15 +208,19 @@ def test_process_that_breaks_down_is_named_and_its_row_stays_due(arguments, dige
     assert campaign_digests(tmp_path) == digests
 
 
-def test_interrupted_processes_end_with_their_parent(arguments, tmp_path):
+@pytest.mark.parametrize('how', [signal.SIGINT, signal.SIGTERM])
+def test_interrupted_processes_end_with_their_parent(arguments, tmp_path, how):
     given = arguments(tmp_path, processes=2, threads=1, episodes=10_000)
     parent = subprocess.Popen([sys.executable, '-m', 'hexapod_doe.run_fleet', *given])
     while len(list(tmp_path.glob('runs/*.partial'))) < 2:
         time.sleep(0.01)
     children = children_of(parent.pid)
     assert len(children) == 2
-    parent.send_signal(signal.SIGINT)
-    assert parent.wait(30.0) == 130
+    parent.send_signal(how)
+    try:
+        assert parent.wait(30.0) == 130
+    finally:
+        parent.kill()
     assert not any(Path(f'/proc/{child}').exists() for child in children)
     assert len(list(tmp_path.glob('runs/*.partial'))) == 2
 
