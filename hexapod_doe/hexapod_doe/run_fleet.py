@@ -11,6 +11,7 @@ import signal
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from datetime import UTC, datetime
 from pathlib import Path
 
 import torch
@@ -99,7 +100,7 @@ def _run(args: argparse.Namespace) -> int:
 
 def _options(plan: Path, args: argparse.Namespace) -> list[str]:
     """Return the command line of one of several processes."""
-    names = ('episodes', 'hyperparameters', 'slots', 'threads', 'device')
+    names = ('episodes', 'hyperparameters', 'slots', 'threads', 'device', 'began')
     given = {'plan': plan} | {name: getattr(args, name) for name in names}
     return [
         text
@@ -119,7 +120,7 @@ def _train(
     slots = min(args.slots or (threads if on_cpu else len(due)), len(due))
     with (
         Crew(threads) as crew,
-        FleetCampaign(campaign, config, episodes, args.device) as rows,
+        FleetCampaign(campaign, config, episodes, args.device, args.began) as rows,
     ):
         build_fleet(config, due, slots, crew, args.device).train(rows.take)
 
@@ -145,6 +146,9 @@ def _parser() -> argparse.ArgumentParser:
         '--threads', type=_count,
         help='of a process; default one on the CPU, one per core on another device',
     )  # fmt: skip
+    parser.add_argument(  # what this command tells its processes
+        '--began', type=datetime.fromisoformat, default=datetime.now(UTC), help=argparse.SUPPRESS
+    )
     parser.add_argument(
         '--device', type=_device, default='cpu', help="where the networks are, such as 'cuda'"
     )

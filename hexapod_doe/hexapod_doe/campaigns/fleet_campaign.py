@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
-from datetime import UTC, datetime
+from datetime import datetime
 from types import TracebackType
 from typing import Self
 
@@ -29,8 +29,23 @@ class FleetCampaign:
     """Gives a fleet one row after another, and counts what comes back."""
 
     def __init__(
-        self, campaign: Campaign, config: AgentConfig, episodes: int, device: str
+        self,
+        campaign: Campaign,
+        config: AgentConfig,
+        episodes: int,
+        device: str,
+        began: datetime,
     ) -> None:
+        """Begin with the rows that are due.
+
+        Args:
+            campaign: whose rows.
+            config: of every run.
+            episodes: of a training.
+            device: where the networks are.
+            began: when the command was given; what failed since, in whatever process, is not
+                tried again.
+        """
         self._campaign, self._config = campaign, config
         self._episodes, self._device = episodes, device
         self._dashboard = Dashboard(campaign, episodes)
@@ -38,7 +53,7 @@ class FleetCampaign:
         self._locks: dict[str, ExitStack] = {}
         self._elsewhere: set[str] = set()
         self._failures = FailureLog(campaign.directory)
-        self._began = datetime.now(UTC)
+        self._began = began
 
     def __enter__(self) -> Self:
         return self
@@ -59,13 +74,12 @@ class FleetCampaign:
             BagError: its bag cannot be written.
         """
         elsewhere = []
-        in_vain = read_failures(self._campaign.directory, self._began)
         while (row := self._campaign.take(_NAME)) is not None:
             if not self._lock(row):
                 elsewhere.append(row)
-            elif is_complete(row.bag) or row.run_id in in_vain:  # another process was at it
+            elif is_complete(row.bag) or self._in_vain(row):  # another process was at it
                 self._locks.pop(row.run_id).close()
-                self._campaign.complete(row, *in_vain.get(row.run_id, ())[-1:])
+                self._campaign.complete(row, self._in_vain(row))
             else:
                 break
         for each in elsewhere:  # due again, should that process leave it
@@ -75,6 +89,11 @@ class FleetCampaign:
         self._dashboard.begin(_place(row), row.run_id, row.observations)
         self._page.refresh()
         return FleetRow(row, self._config, self._episodes, self._device, self)
+
+    def _in_vain(self, row: Row) -> str:
+        """Return why the row failed since the command was given, '' if it did not."""
+        reasons = read_failures(self._campaign.directory, self._began)
+        return reasons.get(row.run_id, [''])[-1]
 
     def _lock(self, row: Row) -> bool:
         """Return whether the row is ours until it ends."""
@@ -101,13 +120,13 @@ class FleetCampaign:
     def end(self, row: Row, error: Exception | None) -> None:
         """Judge a row as the manager does: it is done if its bag is whole."""
         campaign = self._campaign
-        self._locks.pop(row.run_id).close()
         text = f'{row.run_id}  sensors {row.observations or "none"}'
         done = campaign.complete(row, str(error or ''))
         if not done:
             reason = campaign.reasons[row.run_id][-1]
             text = f'{row.run_id} failed: {reason}'
             self._failures.add(row.run_id, _NAME, reason)
+        self._locks.pop(row.run_id).close()  # who has the row next knows how it ended
         self._dashboard.end(_place(row), text, done=done)
         self._page.refresh()
 
