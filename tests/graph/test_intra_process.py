@@ -87,6 +87,21 @@ def test_another_listener_of_the_process_gets_its_samples_as_well(pair: Pair) ->
     assert others == pair.heard == ['a']
 
 
+def test_a_listener_that_nobody_waits_for_is_found(pair: Pair) -> None:
+    others: list[str] = []
+    pair.say('before')
+    pair.listener.create_subscription(
+        String, 'topic', lambda message: others.append(message.data), LOCK_STEP
+    )
+
+    def heard() -> bool:
+        pair.say('a')
+        return bool(others)
+
+    pair.graph.until(heard)
+    assert set(others) == {'a'}
+
+
 def test_somebody_outside_misses_nothing_and_nobody_gets_it_twice(pair: Pair) -> None:
     outside = subprocess.Popen(
         [sys.executable, '-c', LISTENER], env=os.environ, stdout=subprocess.PIPE, text=True

@@ -6,6 +6,8 @@
 from __future__ import annotations
 
 import csv
+import fcntl
+import os
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -29,10 +31,11 @@ class FailureLog:
         Raises:
             OSError: the folder cannot be written.
         """
-        fresh = not self._path.exists()
         with self._path.open('a', newline='', encoding='utf-8') as file:
+            fcntl.flock(file, fcntl.LOCK_EX)  # several processes of a fleet may add
+            file.seek(0, os.SEEK_END)
             writer = csv.writer(file)
-            if fresh:
+            if not file.tell():
                 writer.writerow(_COLUMNS)
             now = datetime.now(UTC).isoformat(timespec='microseconds')
             writer.writerow((now, run_id, worker, reason))

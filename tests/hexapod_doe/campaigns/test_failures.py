@@ -3,6 +3,7 @@
 
 """Failed tries outlive the manager that saw them, and no more than that one."""
 
+from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime, timedelta
 
 from hexapod_doe.campaigns.failures import FailureLog, read_failures
@@ -31,3 +32,9 @@ def test_failures_of_earlier_tries_can_be_left_out(tmp_path):
     now = datetime.now(UTC)
     assert read_failures(tmp_path, now - timedelta(minutes=1)) == {'case01': ['disk']}
     assert read_failures(tmp_path, now + timedelta(minutes=1)) == {}
+
+
+def test_failures_that_come_at_once_share_one_header(tmp_path):
+    with ThreadPoolExecutor(8) as pool:
+        list(pool.map(lambda n: FailureLog(tmp_path).add(f'case{n}', '/w', 'disk'), range(50)))
+    assert read_failures(tmp_path) == {f'case{n}': ['disk'] for n in range(50)}
