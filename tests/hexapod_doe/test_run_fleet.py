@@ -198,7 +198,7 @@ def test_process_that_breaks_down_is_named_and_its_row_stays_due(arguments, dige
     given = arguments(tmp_path, processes=2, threads=1)
     command = [sys.executable, '-m', 'hexapod_doe.run_fleet', *given]
     parent = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-    while not (tmp_path / 'runs').is_dir() or not list(tmp_path.glob('runs/*.partial')):
+    while not bags_under_way(tmp_path):
         time.sleep(0.01)
     (first, *_) = children_of(parent.pid)
     os.kill(first, signal.SIGKILL)
@@ -212,7 +212,7 @@ def test_process_that_breaks_down_is_named_and_its_row_stays_due(arguments, dige
 def test_interrupted_processes_end_with_their_parent(arguments, tmp_path, how):
     given = arguments(tmp_path, processes=2, threads=1, episodes=10_000)
     parent = subprocess.Popen([sys.executable, '-m', 'hexapod_doe.run_fleet', *given])
-    while len(list(tmp_path.glob('runs/*.partial'))) < 2:
+    while len(bags_under_way(tmp_path)) < 2:
         time.sleep(0.01)
     children = children_of(parent.pid)
     assert len(children) == 2
@@ -222,7 +222,12 @@ def test_interrupted_processes_end_with_their_parent(arguments, tmp_path, how):
     finally:
         parent.kill()
     assert not any(Path(f'/proc/{child}').exists() for child in children)
-    assert len(list(tmp_path.glob('runs/*.partial'))) == 2
+    assert len(bags_under_way(tmp_path)) == 2
+
+
+def bags_under_way(directory: Path) -> list[Path]:
+    """Return the bags that are being written; a checkpoint is also `.partial` for a moment."""
+    return [path for path in directory.glob('runs/*.partial') if path.is_dir()]
 
 
 def children_of(process: int) -> list[int]:
