@@ -39,7 +39,6 @@ class Ddpg:
     """Actor, critic, their targets and optimisers.
 
     Attributes:
-        batch: Tensors to fill before `update`.
         actor_parameters: Online actor.
         critic_parameters: Online critic.
 
@@ -76,8 +75,6 @@ class Ddpg:
         self._target_smoothing = target_smoothing
         self._smoothing: float | Tensor = target_smoothing
         self._single = agents == 1
-        self.batch = Batch.empty(agents, batch_size, *sizes, dtype, device)
-        self._batch = Batch(*(self._inner(tensor) for tensor in vars(self.batch).values()))
 
         self.actor_parameters = ParameterStack(
             Actor.shapes(*sizes, actor.hidden), agents, dtype, device
@@ -118,8 +115,11 @@ class Ddpg:
         action = self._policy.forward(self._inner(observation.unsqueeze(1)))
         return action.view(*observation.shape[:1], -1).clone()
 
-    def update(self) -> UpdateStatistics:
-        """Take one gradient step on `batch`: critic, actor, then both targets.
+    def update(self, batch: Batch) -> UpdateStatistics:
+        """Take one gradient step: critic, actor, then both targets.
+
+        Args:
+            batch: A batch per agent (agents, batch, ...); for a stack of one (batch, ...).
 
         Moments of units that no longer fire decay to denormal numbers, on which the optimiser
         takes two thirds longer. They are zero here, and nowhere else: the physics may run in
@@ -127,7 +127,7 @@ class Ddpg:
         """
         torch.set_flush_denormal(True)
         try:
-            return self._update()
+            return self._update(batch)
         finally:
             torch.set_flush_denormal(False)
 
@@ -135,13 +135,13 @@ class Ddpg:
         """Let an update leave all other agents of the stack as they are, from now on."""
         for optimizer in (self._actor_optimizer, self._critic_optimizer):
             optimizer.move_only(agents)
-        smoothing = torch.zeros(self.actor_parameters.agents, 1, dtype=self.batch.reward.dtype)
+        smoothing = torch.zeros(self.actor_parameters.agents, 1)
         smoothing[list(agents)] = self._target_smoothing
-        self._smoothing = smoothing.to(self.batch.reward.device)
+        self._smoothing = smoothing.to(self.actor_parameters.flat)
 
-    def _update(self) -> UpdateStatistics:
-        critic_loss = self._update_critic()
-        actor_loss, mean_q = self._update_actor()
+    def _update(self, batch: Batch) -> UpdateStatistics:
+        critic_loss = self._update_critic(batch)
+        actor_loss, mean_q = self._update_actor(batch)
         for target, online in (
             (self._critic_target_parameters, self.critic_parameters),
             (self._actor_target_parameters, self.actor_parameters),
@@ -151,39 +151,36 @@ class Ddpg:
         self._target_critic.refresh()
         return UpdateStatistics(critic_loss.view(-1), actor_loss.view(-1), mean_q.view(-1))
 
-    def _update_critic(self) -> Tensor:
+    def _update_critic(self, batch: Batch) -> Tensor:
         """Move Q(s, a) towards y = r + bootstrap Q'(s', mu'(s'))."""
-        batch = self._batch
         next_action = self._target_actor.forward(batch.next_observation)
         target = self._target_critic.forward(batch.next_observation, next_action)
         torch.addcmul(batch.reward, batch.bootstrap, target, out=target)
         # L = mean (Q - y)², dL/dQ = 2 (Q - y) / batch
         error = self._critic.forward(batch.observation, batch.action).sub_(target)
-        loss = torch.mean(error * error, dim=-2)
+        loss = torch.linalg.vecdot(error, error, dim=-2) / error.shape[-2]
         error.mul_(2.0 / error.shape[-2])
         self._critic.backward(error)
         self._critic_optimizer.step()
         self._critic.refresh()
         return loss
 
-    def _update_actor(self) -> tuple[Tensor, Tensor]:
+    def _update_actor(self, batch: Batch) -> tuple[Tensor, Tensor]:
         """Move mu(s) up the slope of Q(s, mu(s)) under the critic that was just updated."""
-        batch, config = self._batch, self._actor_config
+        config = self._actor_config
         action = self._actor.forward(batch.observation)
         value = self._critic.forward(batch.observation, action)
-        mean_q = value.mean(dim=-2)
+        mean_q, size = value.mean(dim=-2), value.shape[-2]
         # L = -mean Q / n + c mean z², dL/dQ = -1 / (n batch), n = mean |Q| or 1
-        scale = value.abs().mean(dim=-2) if config.normalize_loss else torch.ones_like(mean_q)
+        magnitude = torch.linalg.vector_norm(value, 1, dim=-2) / size
+        scale = magnitude if config.normalize_loss else torch.ones_like(magnitude)
         loss = -mean_q / scale
-        count = action.shape[-2] * action.shape[-1]
-        if config.preactivation_penalty:
-            z = self._actor.preactivation
-            penalty = torch.linalg.vector_norm(z, dim=(-2, -1)).square() / count
-            loss = loss + config.preactivation_penalty * penalty.unsqueeze(-1)
-        value.copy_((-1.0 / (scale * value.shape[-2])).unsqueeze(-2).expand_as(value))
-        self._actor.backward(
-            self._critic.action_gradient(value), 2.0 * config.preactivation_penalty / count
-        )
+        penalty = config.preactivation_penalty / (size * action.shape[-1])
+        if penalty:
+            z = self._actor.preactivation.flatten(-2)
+            loss.add_(torch.linalg.vecdot(z, z).unsqueeze(-1), alpha=penalty)
+        value.copy_(scale.mul_(-size).reciprocal_().unsqueeze(-2))
+        self._actor.backward(self._critic.action_gradient(value), 2.0 * penalty)
         self._actor_optimizer.step()
         self._actor.refresh()
         return loss, mean_q

@@ -104,6 +104,9 @@ class Dense:
     def backward(self, x: Tensor, y_gradient: Tensor) -> None:
         """Write the gradients of weight and bias: dW = dyᵀ x, db = sum of dy."""
         self._product(y_gradient.mT, x, out=self._weight_gradient)
+        self._sum_bias_gradient(y_gradient)
+
+    def _sum_bias_gradient(self, y_gradient: Tensor) -> None:
         torch.sum(y_gradient, dim=-2, keepdim=self._keep_bias_dim, out=self._bias_gradient)
 
     def backward_input(self, y_gradient: Tensor) -> Tensor:
@@ -112,17 +115,22 @@ class Dense:
 
 
 class SingleUnit(Dense):
-    """A layer of one unit in a stack of one agent: vector products cost a tenth of matrices'."""
+    """A layer of one unit, by sums over products: a matrix product's call alone takes longer.
+
+    The buffer of the input's gradient holds the products, so `forward` and `backward` spoil it.
+    """
 
     def forward(self, x: Tensor) -> Tensor:
-        """Compute y, of shape (batch, 1)."""
-        torch.addmv(self.bias, x, self.weight[0], out=self.output[:, 0])
-        return self.output
+        """Compute y, of shape (..., batch, 1)."""
+        products = torch.mul(x, self.weight, out=self._input_gradient)
+        torch.sum(products, dim=-1, keepdim=True, out=self.output)
+        return self.output.add_(self.bias)
 
     def backward(self, x: Tensor, y_gradient: Tensor) -> None:
         """Write the gradients of weight and bias."""
-        torch.mv(x.mT, y_gradient[:, 0], out=self._weight_gradient[0])
-        torch.sum(y_gradient, dim=0, out=self._bias_gradient)
+        products = torch.mul(x, y_gradient, out=self._input_gradient)
+        torch.sum(products, dim=-2, keepdim=True, out=self._weight_gradient)
+        self._sum_bias_gradient(y_gradient)
 
     def backward_input(self, y_gradient: Tensor) -> Tensor:
         """Gradient of the input, an outer product."""

@@ -143,8 +143,7 @@ class Critic:
         self._shortened = short = Shortened(parameters, gradients, narrow)
         self._observation = _branch(short, 'observation', batch)
         self._action = Dense(short.parameters, short.gradients, 'action', batch)
-        head = SingleUnit if parameters.agents == 1 else Dense
-        self._output = head(parameters, gradients, 'output', batch)
+        self._output = SingleUnit(parameters, gradients, 'output', batch)
         self.value = self._output.output
         self._merged = self._output.input_like(narrow)
         self._widen = Cast(self._merged, wide)

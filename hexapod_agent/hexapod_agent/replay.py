@@ -14,14 +14,14 @@ from torch import Tensor
 
 @dataclass(frozen=True)
 class Batch:
-    """Transitions sampled for a stack of agents.
+    """Transitions for an update of each of several agents, or for several updates of one.
 
     Attributes:
-        observation: (agents, batch, observation size).
-        action: (agents, batch, action size).
-        reward: Discounted sum of the next n rewards (agents, batch, 1).
-        next_observation: Observation after them (agents, batch, observation size).
-        bootstrap: Factor of the value at `next_observation` (agents, batch, 1); 0 after a fall.
+        observation: (batches, batch, observation size).
+        action: (batches, batch, action size).
+        reward: Discounted sum of the next n rewards (batches, batch, 1).
+        next_observation: Observation after them (batches, batch, observation size).
+        bootstrap: Factor of the value at `next_observation` (batches, batch, 1); 0 after a fall.
     """
 
     observation: Tensor
@@ -32,17 +32,21 @@ class Batch:
 
     @staticmethod
     def empty(
-        agents: int, batch: int, observation_size: int, action_size: int, dtype: torch.dtype,
+        batches: int, batch: int, observation_size: int, action_size: int, dtype: torch.dtype,
         device: torch.device | str = 'cpu', pinned: bool = False,
     ) -> 'Batch':  # fmt: skip
         """Allocate the tensors of a batch; `pinned` ones copy to a device without waiting."""
         widths = (observation_size, action_size, 1, observation_size, 1)
         return Batch(
             *(
-                torch.zeros(agents, batch, width, dtype=dtype, device=device, pin_memory=pinned)
+                torch.zeros(batches, batch, width, dtype=dtype, device=device, pin_memory=pinned)
                 for width in widths
             )
         )
+
+    def inner(self, index: int) -> 'Batch':
+        """View of one batch (batch, ...), as a stack of one agent learns from it."""
+        return Batch(*(tensor[index] for tensor in vars(self).values()))
 
     def of(self, agent: int, observation_size: int) -> 'Batch':
         """View of one agent's part (1, batch, ...), its observations as wide as that agent's."""
@@ -128,9 +132,8 @@ class ReplayBuffer:
         self._size += 1
 
     def sample(self, generator: np.random.Generator, batch: Batch) -> None:
-        """Draw transitions uniformly, with replacement, into a batch of one agent."""
-        count = batch.reward.shape[1]
-        drawn = generator.integers(self._size, size=count)
+        """Draw transitions uniformly, with replacement, for one batch after the other."""
+        drawn = generator.integers(self._size, size=batch.reward.numel())
         rows = self._starts[(self._first + drawn) % self.capacity]
         reward, last, bootstrap = self._returns(rows)
         for out, source, index in (
@@ -138,9 +141,10 @@ class ReplayBuffer:
             (batch.action, self._action, rows),
             (batch.next_observation, self._observation, last),
         ):
-            torch.index_select(torch.from_numpy(source), 0, torch.from_numpy(index), out=out[0])
-        batch.reward[0, :, 0] = torch.from_numpy(reward)
-        batch.bootstrap[0, :, 0] = torch.from_numpy(bootstrap)
+            into = out.view(-1, out.shape[-1])
+            torch.index_select(torch.from_numpy(source), 0, torch.from_numpy(index), out=into)
+        batch.reward.view(-1).copy_(torch.from_numpy(reward))
+        batch.bootstrap.view(-1).copy_(torch.from_numpy(bootstrap))
 
     def _returns(
         self, rows: NDArray[np.int64]

@@ -9,6 +9,7 @@ not on who drives or how long anything takes.
 
 import math
 from collections.abc import Mapping
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -80,6 +81,14 @@ class Trainer:
         self._action: NDArray[np.float32] | None = None
         self._step = 0
 
+    @cached_property
+    def _group(self) -> tuple[Batch, list[Batch]]:
+        """The batches of a group of updates, all in all and one by one."""
+        ddpg = self.config.ddpg
+        sizes = (ddpg.batch_size, self.spec.size, ACTION_SIZE)
+        drawn = Batch.empty(ddpg.update_every, *sizes, torch.float32)
+        return drawn, [drawn.inner(number) for number in range(ddpg.update_every)]
+
     @property
     def average_return(self) -> float:
         """Mean of the last `window` returns: at the end, the final average reward."""
@@ -127,9 +136,12 @@ class Trainer:
 
     def learn(self) -> None:
         """Take the gradient steps that are due after the newest observation."""
-        for _ in range(self.due):
-            self.sample(self.agent.batch)
-            statistics = self.agent.update()
+        if not self.due:
+            return
+        drawn, batches = self._group
+        self.sample(drawn)
+        for batch in batches:
+            statistics = self.agent.update(batch)
             self.note_update({name: float(value) for name, value in vars(statistics).items()})
 
     @property
@@ -140,7 +152,7 @@ class Trainer:
         return config.update_every if is_time and len(self._replay) >= config.batch_size else 0
 
     def sample(self, batch: Batch) -> None:
-        """Draw the next update's transitions into a batch of one agent."""
+        """Draw the transitions of the next updates, as many as the batches are."""
         self._replay.sample(self._replay_generator, batch)
 
     def note_update(self, statistics: Mapping[str, float]) -> None:

@@ -18,8 +18,10 @@ import tempfile
 import time
 from pathlib import Path
 
+import torch
 from hexapod_agent.config import AgentConfig
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.observation import ACTION_SIZE, ObservationSpec
+from hexapod_agent.replay import Batch
 from hexapod_agent.training import Trainer
 from hexapod_doe.campaigns.folder import read_progress
 from hexapod_doe.campaigns.progress import State
@@ -66,12 +68,14 @@ def episodes_per_second(directory: Path, workers: int) -> float:
 
 def learn() -> None:
     """Print how many updates a second one learner makes."""
-    agent = Trainer(ObservationSpec('ABCDE'), AgentConfig.load(), 1).agent
-    for tensor in vars(agent.batch).values():
+    spec, config = ObservationSpec('ABCDE'), AgentConfig.load()
+    agent = Trainer(spec, config, 1).agent
+    batch = Batch.empty(1, config.ddpg.batch_size, spec.size, ACTION_SIZE, torch.float32).inner(0)
+    for tensor in vars(batch).values():
         tensor.uniform_(-1.0, 1.0)
     updates, began = 0, time.perf_counter()
     while time.perf_counter() - began < LEARN_S:
-        agent.update()
+        agent.update(batch)
         updates += 1
     print(updates / LEARN_S)
 

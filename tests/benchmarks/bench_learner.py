@@ -4,8 +4,9 @@
 """Time of one update on one core, against its bare matrix products and against stable-baselines3.
 
 Run: `python tests/benchmarks/bench_learner.py`. Sizes are those of ABCDE: 108 observations, 30
-actions, hidden layers of 400 and 300, batches of 128. stable-baselines3 is timed where it can be
-imported. Times are processor time, the best of several rounds: other load only ever adds.
+actions, hidden layers of 400 and 300, batches of 128, updates in groups as article.yaml has them.
+stable-baselines3 is timed where it can be imported, in groups of the same size. Times are
+processor time, the best of several rounds: other load only ever adds.
 """
 
 import time
@@ -25,7 +26,7 @@ try:
 except ImportError:
     stable_baselines3 = None
 
-ROUNDS, REPEATS = 7, 100
+ROUNDS, REPEATS = 15, 50
 
 
 def milliseconds(call: Callable[[], object], repeats: int = REPEATS) -> float:
@@ -66,20 +67,19 @@ def matrix_products(batch: int, sizes: tuple[int, int, int, int]) -> Callable[[]
 
 
 def full_trainer(precision: str, letters: str = 'ABCDE') -> tuple[Trainer, HexapodLine]:
-    """A trainer with a filled buffer that updates at every call, and its environment."""
-    changes = {'training': {'precision': precision}, 'ddpg': {'update_every': 1}}
-    config = AgentConfig.from_mapping(changes, 'benchmark')
+    """A trainer with a group of updates due, and its environment."""
+    config = AgentConfig.from_mapping({'training': {'precision': precision}}, 'benchmark')
     trainer, env = Trainer(ObservationSpec(letters), config, 1), HexapodLine(letters, config)
     observation, _ = env.reset(seed=1)
     trainer.begin_episode(0)
-    for _ in range(599):
+    for _ in range(config.task.time_limit_steps):
         observation, *_ = env.step(trainer.observe(observation, env.outcome))
     return trainer, env
 
 
 def time_baseline(trainer: Trainer, env: HexapodLine) -> float:
     """One gradient step of stable-baselines3's DDPG with the same layers and batch."""
-    config = trainer.config
+    config, group = trainer.config, trainer.due
     layers = {'pi': list(config.actor.hidden), 'qf': list(config.critic.hidden)}
     model = stable_baselines3.DDPG(
         'MlpPolicy', env, batch_size=config.ddpg.batch_size, buffer_size=2000, device='cpu',
@@ -87,7 +87,7 @@ def time_baseline(trainer: Trainer, env: HexapodLine) -> float:
     )  # fmt: skip
     model.learn(600)
     batch = config.ddpg.batch_size
-    return milliseconds(lambda: model.train(gradient_steps=1, batch_size=batch))
+    return milliseconds(lambda: model.train(gradient_steps=group, batch_size=batch), 3) / group
 
 
 def main() -> None:
@@ -95,9 +95,8 @@ def main() -> None:
     updates = {}
     for precision in ('float32', 'float32_fast', 'bfloat16'):
         trainer, env = full_trainer(precision)
-        for _ in range(50):
-            trainer.learn()
-        updates[precision] = milliseconds(trainer.learn)
+        trainer.learn()
+        updates[precision] = milliseconds(trainer.learn, 3) / trainer.due
     config = trainer.config
     sizes = (trainer.spec.size, *config.actor.hidden, ACTION_SIZE)
     multiply = matrix_products(config.ddpg.batch_size, sizes)
@@ -109,7 +108,7 @@ def main() -> None:
         references[name] = time_baseline(trainer, env)
     action = np.zeros(ACTION_SIZE, np.float32)
     env.reset(seed=1)
-    references['step of the environment'] = milliseconds(lambda: env.step(action), 80)
+    references['step of the environment'] = milliseconds(lambda: env.step(action), 40)
 
     table = Table('one core, ms', 'time', *(f'{name} / this' for name in updates))
     for name, time_ms in (updates | references).items():

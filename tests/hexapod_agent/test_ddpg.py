@@ -9,6 +9,7 @@ from hexapod_agent.ddpg import Ddpg
 from hexapod_agent.hyperparameters import ActorConfig, CriticConfig
 from hexapod_agent.networks import Actor, Critic
 from hexapod_agent.parameters import ParameterStack
+from hexapod_agent.replay import Batch
 
 SIZES = (5, 3)
 BATCH = 16
@@ -40,15 +41,22 @@ def make(
     )
 
 
-def fill(agent: Ddpg, seed: int = 0) -> None:
+def empty(agents: int = 1, batch: int = BATCH, observations: int = SIZES[0]) -> Batch:
+    return Batch.empty(agents, batch, observations, SIZES[1], torch.float64)
+
+
+def fill(agent: Ddpg, agents: int = 1, seed: int = 0) -> Batch:
+    """Draw the agents' output layers, and return transitions for each of them."""
     generator = torch.Generator().manual_seed(seed)
-    for tensor in vars(agent.batch).values():
+    batch = empty(agents)
+    for tensor in vars(batch).values():
         tensor.uniform_(-1, 1, generator=generator)
     # Larger weights than the initial ones, so that no term of the update is negligible.
     for parameters in (agent.actor_parameters, agent.critic_parameters):
         for name, array in parameters.arrays.items():
             if name.startswith('output'):
                 array.uniform_(-0.5, 0.5, generator=generator)
+    return batch
 
 
 def forward(network: type, parameters: ParameterStack, *inputs: torch.Tensor) -> torch.Tensor:
@@ -78,8 +86,7 @@ def adam(arrays: dict[str, torch.Tensor], loss: torch.Tensor) -> None:
 @pytest.mark.parametrize(('penalty', 'normalize'), [(0.0, False), (0.02, True)])
 def test_update_is_that_of_autograd(penalty, normalize):
     agent = make(preactivation_penalty=penalty, normalize_loss=normalize)
-    fill(agent)
-    batch = type(agent.batch)(*(tensor[0].clone() for tensor in vars(agent.batch).values()))
+    batch = fill(agent).inner(0)
     actor, critic = leaves(agent.actor_parameters), leaves(agent.critic_parameters)
     # The targets still have the initial weights; take them from the state.
     state = {name: value.clone() for name, value in agent.state_dict().items() if 'target' in name}
@@ -89,7 +96,7 @@ def test_update_is_that_of_autograd(penalty, normalize):
         stack.flat.copy_(state[f'target_{name}'])
         targets[name] = {key: array[0] for key, array in stack.arrays.items()}
 
-    statistics = agent.update()
+    statistics = agent.update(batch)
 
     next_action = forward(Actor, targets['actor'], batch.next_observation).tanh()
     target = batch.reward + batch.bootstrap * forward(
@@ -121,11 +128,11 @@ def test_agents_of_a_stack_do_not_touch_one_another():
     stacks = []
     for seed in (1, 2):
         agent = make(agents=2)
-        fill(agent)
-        for tensor in vars(agent.batch).values():
+        batch = fill(agent, agents=2)
+        for tensor in vars(batch).values():
             tensor[1].uniform_(-1, 1, generator=torch.Generator().manual_seed(seed))
         for _ in range(3):
-            agent.update()
+            agent.update(batch)
         stacks.append(agent)
     first, second = stacks
     assert torch.equal(first.actor_parameters.flat[0], second.actor_parameters.flat[0])
@@ -134,24 +141,22 @@ def test_agents_of_a_stack_do_not_touch_one_another():
 
 def test_a_stack_learns_what_single_agents_learn():
     stack, single = make(agents=2), make()
-    fill(stack)
+    batch = fill(stack, agents=2)
     for name, part in single.state_dict().items():
         if not name.endswith('optimizer'):
             part.copy_(stack.state_dict()[name][:1])
-    for part, whole in zip(vars(single.batch).values(), vars(stack.batch).values(), strict=True):
-        part.copy_(whole[:1])
     for _ in range(3):
-        stack.update()
-        single.update()
+        stack.update(batch)
+        single.update(batch.inner(0))
     torch.testing.assert_close(stack.actor_parameters.flat[:1], single.actor_parameters.flat)
 
 
 def test_only_the_agents_that_learn_are_moved():
     stack = make(agents=3)
-    fill(stack)
+    batch = fill(stack, agents=3)
     before = {name: part.clone() for name, part in stacks_of(stack).items()}
     stack.learn_only([0, 2])
-    stack.update()
+    stack.update(batch)
     for name, part in stacks_of(stack).items():
         moved = [not torch.equal(part[agent], before[name][agent]) for agent in range(3)]
         assert moved == [True, False, True], name
@@ -159,14 +164,13 @@ def test_only_the_agents_that_learn_are_moved():
 
 def test_an_agent_put_in_a_wider_stack_learns_as_alone():
     single, stack = make(), make(agents=2, observations=SIZES[0] + 4)
-    fill(single)
+    narrow, wide = fill(single), empty(agents=2, observations=SIZES[0] + 4)
     stack.put(1, single)
-    for ours, theirs in zip(vars(stack.batch).values(), vars(single.batch).values(), strict=True):
-        ours.zero_()
+    for ours, theirs in zip(vars(wide).values(), vars(narrow).values(), strict=True):
         ours[1, :, : theirs.shape[-1]] = theirs[0]
     for _ in range(3):
-        stack.update()
-        single.update()
+        stack.update(wide)
+        single.update(narrow.inner(0))
     taken = make(seed=1)
     stack.take(1, taken)
     for name, part in stacks_of(single).items():
@@ -184,14 +188,14 @@ def test_preactivation_penalty_keeps_actions_off_the_bounds():
     outputs = {}
     for penalty in (0.0, 0.3):
         agent = make(preactivation_penalty=penalty)
-        fill(agent)
-        agent.batch.bootstrap.zero_()
+        batch = fill(agent).inner(0)
+        batch.bootstrap.zero_()
         generator = torch.Generator().manual_seed(1)
         for _ in range(1500):
-            agent.batch.action.uniform_(-1, 1, generator=generator)
-            agent.batch.reward.copy_(agent.batch.action.sum(dim=-1, keepdim=True))
-            agent.update()
-        outputs[penalty] = agent.act(agent.batch.observation[:, 0]).abs().mean().item()
+            batch.action.uniform_(-1, 1, generator=generator)
+            batch.reward.copy_(batch.action.sum(dim=-1, keepdim=True))
+            agent.update(batch)
+        outputs[penalty] = agent.act(batch.observation[:1]).abs().mean().item()
     assert outputs[0.0] > 0.99
     assert outputs[0.3] < 0.95
 
@@ -200,18 +204,15 @@ def test_learns_the_best_action_of_each_state():
     """One-step problem: reward -|a - s|², so the best action is the state's first numbers."""
     agent = make(batch=64, rate=2e-3)
     generator = torch.Generator().manual_seed(0)
-    agent.batch.bootstrap.zero_()
+    batch = empty(batch=64).inner(0)
     for _ in range(3000):
-        agent.batch.observation.uniform_(-0.8, 0.8, generator=generator)
-        agent.batch.action.uniform_(-1, 1, generator=generator)
-        error = agent.batch.action - agent.batch.observation[..., :3]
-        agent.batch.reward.copy_(-(error * error).sum(dim=-1, keepdim=True))
-        agent.update()
+        batch.observation.uniform_(-0.8, 0.8, generator=generator)
+        batch.action.uniform_(-1, 1, generator=generator)
+        error = batch.action - batch.observation[..., :3]
+        batch.reward.copy_(-(error * error).sum(dim=-1, keepdim=True))
+        agent.update(batch)
     error = torch.cat(
-        [
-            agent.act(observation[None]) - observation[:3]
-            for observation in agent.batch.observation[0]
-        ]
+        [agent.act(observation[None]) - observation[:3] for observation in batch.observation]
     )
     # A constant action would miss by 0.46, the standard deviation of U(-0.8, 0.8).
     assert error.square().mean().sqrt() < 0.15
@@ -230,9 +231,10 @@ def test_initial_value_is_that_of_every_state_and_of_the_target():
         stack = agent.critic_parameters.like()
         stack.flat.copy_(agent.state_dict()[part])
         assert stack.arrays['output.bias'].item() == pytest.approx(50.0, abs=5e-3)
-    agent.batch.bootstrap.fill_(0.5)
+    batch = empty().inner(0)
+    batch.bootstrap.fill_(0.5)
     # TD error Q - (r + Q'/2) = 25 but for what the small output weights add.
-    assert agent.update().critic_loss.item() == pytest.approx(625.0, rel=0.01)
+    assert agent.update(batch).critic_loss.item() == pytest.approx(625.0, rel=0.01)
 
 
 @pytest.mark.parametrize('fails', [False, True])
@@ -240,9 +242,9 @@ def test_denormal_numbers_survive_outside_an_update(fails, monkeypatch):
     """Flushing is a state of the thread, in which the physics may run as well."""
     agent = make()
     if fails:
-        monkeypatch.setattr(agent, '_update_critic', lambda: 1 / 0)
+        monkeypatch.setattr(agent, '_update_critic', lambda _batch: 1 / 0)
         with pytest.raises(ZeroDivisionError):
-            agent.update()
+            agent.update(empty().inner(0))
     else:
-        agent.update()
+        agent.update(empty().inner(0))
     assert torch.tensor(1e-310, dtype=torch.float64) * 0.5 > 0

@@ -107,6 +107,19 @@ def test_restored_buffer_goes_on_alike(episodes):
     assert drawn(twin) == drawn(buffer)
 
 
+def test_batches_drawn_at_once_are_those_drawn_one_after_another():
+    buffer = make()
+    fill(buffer, 1, 50)
+    group, single = (Batch.empty(n, 7, 1, 1, torch.float32) for n in (3, 1))
+    buffer.sample(np.random.default_rng(0), group)
+    generator = np.random.default_rng(0)
+    for number in range(3):
+        buffer.sample(generator, single)
+        alone = vars(single.inner(0)).values()
+        for ours, theirs in zip(vars(group.inner(number)).values(), alone, strict=True):
+            assert torch.equal(ours, theirs)
+
+
 def test_part_of_a_stack_is_filled_as_a_batch_of_one():
     buffer = make()
     fill(buffer, 1, 50)

@@ -8,7 +8,8 @@ import pytest
 import torch
 from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.env import HexapodLine
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.observation import ACTION_SIZE, ObservationSpec
+from hexapod_agent.replay import Batch
 from hexapod_agent.train import train_episode
 from hexapod_agent.training import Trainer, TrainingDivergedError
 from hexapod_sim.task import Outcome
@@ -91,10 +92,9 @@ def test_reward_is_scaled_for_the_critic_and_not_for_the_report(small_config):
     config = AgentConfig.from_mapping(small_config.to_mapping() | ddpg, 'a test')
     trainer = Trainer(ObservationSpec('BC'), config, 1)
     play(trainer, [2.0] * 20)
-    trainer.begin_episode(1)
-    trainer.observe(observation(trainer), outcome(0))
-    trainer.learn()
-    assert trainer.agent.batch.reward.eq(1.0).all()
+    batch = Batch.empty(1, 50, trainer.spec.size, ACTION_SIZE, torch.float32)
+    trainer.sample(batch)
+    assert batch.reward.eq(1.0).all()
     assert trainer.summary.episode_return == 40.0
 
 

@@ -46,9 +46,10 @@ class StackedLearners:
             ddpg.target_smoothing, None, places, wide, narrow, self._device,
         )  # fmt: skip
         pinned = self._device.type != 'cpu'
-        self._drawn = Batch.empty(
-            places, ddpg.batch_size, observation_size, ACTION_SIZE, wide, pinned=pinned
-        )
+        sizes = (places, ddpg.batch_size, observation_size, ACTION_SIZE, wide)
+        self._drawn = Batch.empty(*sizes, pinned=pinned)
+        self._sent = Batch.empty(*sizes, self._device)
+        self._batch = self._sent.inner(0) if places == 1 else self._sent
         self._observations = torch.zeros(places, observation_size, pin_memory=pinned)
         self._learning: tuple[int, ...] = ()
         self._pending: tuple[list[Seat], UpdateStatistics] | None = None
@@ -92,11 +93,9 @@ class StackedLearners:
     def _update(self, seats: list[Seat]) -> None:
         """Draw a batch for each trainer, and send the update to the device."""
         self._crew.run(partial(self._draw, seat) for seat in seats)
-        for here, there in zip(
-            vars(self._drawn).values(), vars(self._stack.batch).values(), strict=True
-        ):
+        for here, there in zip(vars(self._drawn).values(), vars(self._sent).values(), strict=True):
             there.copy_(here, non_blocking=True)
-        self._pending = seats, self._stack.update()
+        self._pending = seats, self._stack.update(self._batch)
 
     def _draw(self, seat: Seat) -> None:
         trainer = seat.trainer
