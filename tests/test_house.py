@@ -18,9 +18,11 @@ MAY_IMPORT = {
 }
 OURS = {*MAY_IMPORT, 'hexapod_bringup'}
 FILES = [file for name in MAY_IMPORT for file in sorted((ROOT / name / name).rglob('*.py'))]
-# Besides the nodes: what turns numbers into messages, and the agent's side of a graph run.
+# Besides the nodes: what turns numbers into messages, the agent's side of a graph run, and what
+# the recorder hears.
 TOUCHES_ROS = {
     'messages.py', 'peers.py', 'graph_run.py', 'control_loop.py', 'publishers.py', 'real_time.py',
+    'sampled_topics.py',
 }  # fmt: skip
 MESSAGE_PACKAGES = {
     'diagnostic_msgs', 'geometry_msgs', 'hexapod_interfaces', 'hexapod_node', 'nav_msgs',

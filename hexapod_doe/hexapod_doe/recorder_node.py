@@ -16,7 +16,7 @@ from hexapod_node.coroutine_service import create_coroutine_service
 from hexapod_node.diagnostics import Diagnostics, Health
 from hexapod_node.parameters import Parameter, declare
 from hexapod_node.qos import LOCK_STEP
-from hexapod_node.raw_topics import RawSubscriptions, subscribe_raw
+from hexapod_node.raw_topics import subscribe_raw
 from hexapod_node.spin import run
 from hexapod_node.stamps import time_message, to_nanoseconds
 from hexapod_node.threads import in_thread
@@ -30,6 +30,7 @@ from hexapod_doe.bags.recording import Recording
 from hexapod_doe.bags.run_bag import EPISODE_RESULT
 from hexapod_doe.bags.salvage import set_aside
 from hexapod_doe.errors import BagError
+from hexapod_doe.sampled_topics import SampledTopics
 
 RESULT_TOPIC = 'episode_result'
 
@@ -61,16 +62,14 @@ PARAMETERS = (
 class RecorderNode(Node):
     """Holds the bag of at most one run.
 
-    The results of its episodes are recorded throughout. The run's other topics are subscribed
-    only while a sampled episode lasts, so that nobody publishes them for nothing.
+    The results of its episodes are recorded throughout, its other topics in sampled episodes.
     """
 
     def __init__(self) -> None:
         super().__init__('recorder')
         declare(self, PARAMETERS)
         self._recording: Recording | None = None
-        self._topics: list[str] = []
-        self._samples = RawSubscriptions(self, self._on_sample)
+        self._samples = SampledTopics(self, self._on_sample)
         self._failure = ''
         """Why nothing more can be recorded of the run."""
         create_coroutine_service(self, StartRecording, '~/start', self._on_start)
@@ -113,7 +112,7 @@ class RecorderNode(Node):
         except BagError as error:
             response.message = str(error)
             return response
-        self._topics = [self.resolve_topic_name(topic) for topic in request.topics]
+        self._samples.names = [self.resolve_topic_name(topic) for topic in request.topics]
         self._failure = ''
         response.last = time_message(last_ns)
         response.success = True
@@ -126,15 +125,17 @@ class RecorderNode(Node):
         try:
             recording = self._usable_recording()
             if request.enable:
-                await self._begin_sample(recording, request.episode)
+                await self._samples.begin(recording, request.episode)
             else:
-                faults = await self._end_sample(recording, to_nanoseconds(request.last))
+                faults = await self._samples.end(recording, to_nanoseconds(request.last))
+                for fault in faults:
+                    self.get_logger().warning(f'run {recording.run_id}, {fault}')
                 response.message = '; '.join(faults)
             response.success = True
         except BagError as error:
             self._samples.close()
             response.message = str(error)
-        response.topics = self._samples.topics
+        response.topics = self._samples.subscribed
         return response
 
     async def _on_secure(
@@ -176,41 +177,6 @@ class RecorderNode(Node):
             self, lambda: not recording.lacking(episodes), self._seconds('result_timeout')
         )
         return self._usable_recording()
-
-    # Sampled episodes
-
-    async def _begin_sample(self, recording: Recording, episode: int) -> None:
-        timeout_s = self._seconds('match_timeout')
-        self._samples.close()
-        if not await until_true(self, lambda: not self._unpublished(), timeout_s):
-            raise BagError(
-                f'episode {episode}: no publisher of {", ".join(self._unpublished())} within '
-                f'{timeout_s:g} s, expected one of each recorded topic'
-            )
-        publishers = {name: self.get_publishers_info_by_topic(name) for name in self._topics}
-        recording.begin_sample(
-            episode, [recorded_topic(name, publishers[name]) for name in publishers]
-        )
-        self._samples.open(publishers)
-        if not await until_true(self, lambda: not self._samples.unmatched(), timeout_s):
-            unheard = ', '.join(self._samples.unmatched())
-            raise BagError(
-                f'episode {episode}: {unheard} not heard within {timeout_s:g} s, expected a '
-                'publisher of compatible QoS'
-            )
-
-    async def _end_sample(self, recording: Recording, last_ns: int) -> list[str]:
-        await until_true(
-            self, lambda: not recording.waiting(last_ns), self._seconds('drain_timeout')
-        )
-        self._samples.close()
-        faults = recording.end_sample(last_ns)
-        for fault in faults:
-            self.get_logger().warning(f'run {recording.run_id}, {fault}')
-        return faults
-
-    def _unpublished(self) -> list[str]:
-        return [name for name in self._topics if not self.count_publishers(name)]
 
     # Messages
 
