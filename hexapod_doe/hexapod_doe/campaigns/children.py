@@ -10,6 +10,7 @@ import signal
 import subprocess
 import time
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from hexapod_doe.campaigns.leash import leashed
@@ -37,11 +38,11 @@ def start(command: Sequence[str], log: Path, environment: Mapping[str, str]) -> 
 
 
 def stop(children: Iterable[Child]) -> None:
-    """Ask all to end, and end those that have not after a while."""
+    """Ask all to end, as Ctrl-C does, and end those that have not after a while."""
     asked = list(children)
     for child in asked:
-        if child.poll() is None:
-            child.send_signal(signal.SIGINT)
+        if child.poll() is None:  # else its number may be a stranger's by now
+            _signal(child, signal.SIGINT)
     deadline = time.monotonic() + _STOP_S
     for child in asked:
         try:
@@ -53,7 +54,10 @@ def stop(children: Iterable[Child]) -> None:
 
 def kill(child: Child) -> None:
     """End one and whatever it started, at once."""
-    try:
-        os.killpg(child.pid, signal.SIGKILL)
-    except ProcessLookupError:  # all of it has ended
-        return
+    _signal(child, signal.SIGKILL)
+
+
+def _signal(child: Child, number: signal.Signals) -> None:
+    """Signal one and whatever it started: `ros2 run` waits for a node, and hands nothing on."""
+    with suppress(ProcessLookupError):  # all of it has ended
+        os.killpg(child.pid, number)

@@ -19,12 +19,20 @@ import os, sys, time
 from hexapod_node.lifeline import follow
 follow()
 open(sys.argv[1], 'w').write(str(os.getpid()))
-time.sleep(600)
+try:
+    time.sleep(600)
+except KeyboardInterrupt:
+    open(sys.argv[1] + '.ended', 'w').close()
 """
 # Stands between, as `ros2 run` of a full ROS installation does.
 RUNNER = """
 import subprocess, sys
-subprocess.run([sys.executable, *sys.argv[1:]])
+node = subprocess.Popen([sys.executable, *sys.argv[1:]])
+while node.returncode is None:
+    try:
+        node.wait()
+    except KeyboardInterrupt:
+        pass
 """
 DIRECT = f'{sys.executable} worker.py {{name}}'
 NESTED = f'{sys.executable} runner.py worker.py {{name}}'
@@ -120,10 +128,13 @@ def test_workers_end_with_a_manager_that_is_killed(folder, command, number):
     until(lambda: not any(alive(pid) for pid in pids))
 
 
-def test_stopping_ends_all_of_them(folder, workers):
+@pytest.mark.parametrize('command', [DIRECT, NESTED], ids=['direct', 'behind another process'])
+def test_stopping_lets_all_of_them_end_in_order(folder, command):
+    workers = LocalWorkers(2, command, folder / 'logs')
     pids = [until(lambda n=n: identity(folder / f'worker_{n}')) for n in (1, 2)]
     workers.stop()
     assert not any(alive(pid) for pid in pids)
+    assert all((folder / f'worker_{n}.ended').exists() for n in (1, 2))
 
 
 def test_stopping_does_not_wait_for_one_that_hangs(folder, workers, monkeypatch):
