@@ -48,15 +48,15 @@ class Batch:
         """View of one batch (batch, ...), as a stack of one agent learns from it."""
         return Batch(*(tensor[index] for tensor in vars(self).values()))
 
-    def of(self, agent: int, observation_size: int) -> 'Batch':
-        """View of one agent's part (1, batch, ...), its observations as wide as that agent's."""
-        part, wide = slice(agent, agent + 1), slice(0, observation_size)
+    def part(self, batches: slice, observation_size: int) -> 'Batch':
+        """View of some of the batches, the observations only so wide."""
+        wide = slice(0, observation_size)
         return Batch(
-            self.observation[part, :, wide],
-            self.action[part],
-            self.reward[part],
-            self.next_observation[part, :, wide],
-            self.bootstrap[part],
+            self.observation[batches, :, wide],
+            self.action[batches],
+            self.reward[batches],
+            self.next_observation[batches, :, wide],
+            self.bootstrap[batches],
         )
 
 

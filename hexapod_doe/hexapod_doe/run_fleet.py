@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import signal
 import sys
@@ -88,8 +89,8 @@ def _run(args: argparse.Namespace) -> int:
         due = [row.observations for row in campaign.rows if row.run_id not in campaign.done]
         processes = args.processes or (_CORES if is_cpu(args.device) else 1)
         if processes > 1 and due:
-            count, options = min(processes, len(due)), _options(plan, args)
-            for what in train_in_processes(directory, count, options):
+            count = min(processes, len(due))
+            for what in train_in_processes(directory, count, _options(plan, args, count, due)):
                 print(f'run_fleet: {what}', file=sys.stderr)
             campaign = Campaign.open(plan, attempts=1)
         elif due:
@@ -98,10 +99,13 @@ def _run(args: argparse.Namespace) -> int:
     return 0 if len(campaign.done) == len(campaign.rows) else 1
 
 
-def _options(plan: Path, args: argparse.Namespace) -> list[str]:
+def _options(plan: Path, args: argparse.Namespace, count: int, due: Sequence[str]) -> list[str]:
     """Return the command line of one of several processes."""
     names = ('episodes', 'hyperparameters', 'slots', 'threads', 'device', 'began')
     given = {'plan': plan} | {name: getattr(args, name) for name in names}
+    if not is_cpu(args.device):  # its rows and the cores are shared out evenly
+        given['slots'] = args.slots or math.ceil(len(due) / count)
+        given['threads'] = args.threads or max(_CORES // count, 1)
     return [
         text
         for name, value in given.items()
@@ -139,12 +143,12 @@ def _parser() -> argparse.ArgumentParser:
     )  # fmt: skip
     parser.add_argument(
         '--slots', type=_count,
-        help='runs at a time in a process; default one per thread on the CPU, all rows on '
-        'another device',
+        help='runs at a time in a process; default one per thread on the CPU, on another device '
+        "the process's share of the rows",
     )  # fmt: skip
     parser.add_argument(
         '--threads', type=_count,
-        help='of a process; default one on the CPU, one per core on another device',
+        help="of a process; default one on the CPU, its share of the cores on another device",
     )  # fmt: skip
     parser.add_argument(  # what this command tells its processes
         '--began', type=datetime.fromisoformat, default=datetime.now(UTC), help=argparse.SUPPRESS

@@ -8,7 +8,8 @@ two episodes of 144 steps, whole groups of updates. The first, without a full ba
 Each is timed in turn, for several rounds; the best round counts, as other load only ever slows
 down. On a busy machine the processor time of a step is the figure to compare.
 
-With an accelerator, `--device cuda` times fleets of 1, 32 and 320 rows on it instead.
+With an accelerator, `--device cuda` times fleets of 1, 32 and 320 rows on it instead, the last
+also in several processes.
 """
 
 from __future__ import annotations
@@ -48,6 +49,7 @@ OBSERVATIONS = 'ABCDE'
 STEPS, EPISODES, ROUNDS = 144, 2, 3
 ROWS = {'cpu': (1, 4, 32)}
 ROWS_ON_DEVICE = (1, 32, 320)
+PROCESSES_ON_DEVICE = 8  # for the most rows, once more
 CHANGES = {'task': {'time_limit_steps': STEPS}, 'ddpg': {'buffer_size': 10_000}}
 RUN_STEPS = 1000 * 600  # of a run of the article's length
 CAMPAIGN_RUNS = 320
@@ -95,10 +97,10 @@ def one_run(seed: int = 1) -> Speed:
     return Speed(STEPS, time.perf_counter() - wall, time.process_time() - cpu)
 
 
-def processes(one: Callable[[int], Speed]) -> Speed:
-    """The same in a process per core, all at once."""
-    with multiprocessing.get_context('spawn').Pool(CORES) as pool:
-        return Speed.together(pool.map(one, range(CORES), chunksize=1))
+def processes(one: Callable[[int], Speed], count: int = CORES) -> Speed:
+    """The same in several processes, all at once; one per core."""
+    with multiprocessing.get_context('spawn').Pool(count) as pool:
+        return Speed.together(pool.map(one, range(count), chunksize=1))
 
 
 def session_cpu_s(session: int) -> float:
@@ -196,7 +198,14 @@ def one_fleet(seed: int) -> Speed:
     return fleet(1)[0]
 
 
-def fleet(rows: int, device: str = 'cpu') -> tuple[Speed, dict[str, float]]:
+def share_of_fleet(rows: int, device: str, threads: int, number: int) -> Speed:
+    """One of the processes of `run_fleet` on a device."""
+    return fleet(rows, device, threads)[0]
+
+
+def fleet(
+    rows: int, device: str = 'cpu', threads: int | None = None
+) -> tuple[Speed, dict[str, float]]:
     """A fleet of so many rows at a time in this process; with the shares of its time."""
     wall = cpu = 0.0
 
@@ -205,7 +214,7 @@ def fleet(rows: int, device: str = 'cpu') -> tuple[Speed, dict[str, float]]:
         wall, cpu = time.perf_counter(), time.process_time()
         made.stopwatch = Stopwatch()
 
-    with Crew(1 if device == 'cpu' else CORES) as crew:
+    with Crew(threads or (1 if device == 'cpu' else CORES)) as crew:
         runs = [TimedRun(seed, start_clock) for seed in range(rows)]
         config = runs[0].trainer.config
         made = build_fleet(config, [OBSERVATIONS], rows, crew, device)
@@ -244,15 +253,19 @@ def against_others(console: Console) -> None:
 
 def by_part(console: Console, device: str) -> None:
     """Print the speed of a fleet by its size, where its time goes, and what a campaign takes."""
-    measured = {rows: fleet(rows, device) for rows in ROWS.get(device, ROWS_ON_DEVICE)}
+    measured = {str(rows): fleet(rows, device) for rows in ROWS.get(device, ROWS_ON_DEVICE)}
     parts = next(iter(measured.values()))[1]
+    if device not in ROWS:
+        count, rows = PROCESSES_ON_DEVICE, ROWS_ON_DEVICE[-1]
+        one = partial(share_of_fleet, rows // count, device, max(CORES // count, 1))
+        measured[f'{rows} in {count} processes'] = processes(one, count), {}
     hours = f'hours for {CAMPAIGN_RUNS} runs'
     table = Table('rows at a time', 'agent steps/s', 'cpu ms/step', *parts, hours)
     for rows, (speed, shares) in measured.items():
-        percent = (f'{shares[name]:.1%}' for name in parts)
+        percent = (f'{shares[name]:.1%}' if shares else '' for name in parts)
         campaign = CAMPAIGN_RUNS * RUN_STEPS / speed.rate / 3600
         figures = (f'{speed.rate:.0f}', f'{speed.cost_ms:.2f}')
-        table.add_row(str(rows), *figures, *percent, f'{campaign:.1f}')
+        table.add_row(rows, *figures, *percent, f'{campaign:.1f}')
     console.print(table)
 
 

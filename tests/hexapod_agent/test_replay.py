@@ -124,7 +124,7 @@ def test_part_of_a_stack_is_filled_as_a_batch_of_one():
     buffer = make()
     fill(buffer, 1, 50)
     stack, single = (Batch.empty(n, 20, width, 1, torch.float32) for n, width in ((3, 4), (1, 1)))
-    buffer.sample(np.random.default_rng(0), stack.of(1, 1))
+    buffer.sample(np.random.default_rng(0), stack.part(slice(1, 2), 1))
     buffer.sample(np.random.default_rng(0), single)
     for whole, part in zip(vars(stack).values(), vars(single).values(), strict=True):
         assert torch.equal(whole[1:2, :, :1], part)

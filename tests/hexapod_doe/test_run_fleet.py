@@ -114,6 +114,22 @@ def test_a_stack_fills_the_same_campaign(arguments, tmp_path, monkeypatch):
         assert len(read_run(bag).episodes) == EPISODES
 
 
+def test_processes_on_a_device_share_out_rows_and_cores(arguments, tmp_path, monkeypatch):
+    started = []
+    monkeypatch.setattr(run_fleet, 'is_cpu', lambda device: False)
+    monkeypatch.setattr(run_fleet, '_CORES', 7)
+    monkeypatch.setattr(
+        run_fleet, 'train_in_processes', lambda *given: started.append(given) or []
+    )
+    given = arguments(tmp_path, processes=3)
+    at = given.index('--threads')
+    assert run_fleet.main([*given[:at], *given[at + 2 :]]) == 1
+    ((directory, count, options),) = started
+    assert (directory, count) == (tmp_path, 3)
+    assert options[options.index('--slots') + 1] == '2'  # of 4 rows
+    assert options[options.index('--threads') + 1] == '2'
+
+
 def test_killed_fleet_goes_on_to_the_same_bags(arguments, digests, tmp_path):
     given = arguments(tmp_path, slots=2)
     process = subprocess.Popen([sys.executable, '-m', 'hexapod_doe.run_fleet', *given])

@@ -46,19 +46,32 @@ class StackedLearners:
             ddpg.target_smoothing, None, places, wide, narrow, self._device,
         )  # fmt: skip
         pinned = self._device.type != 'cpu'
-        sizes = (places, ddpg.batch_size, observation_size, ACTION_SIZE, wide)
+        # A group of updates for the first place, then one for the second, and so on.
+        sizes = (places * self.beat, ddpg.batch_size, observation_size, ACTION_SIZE, wide)
         self._drawn = Batch.empty(*sizes, pinned=pinned)
         self._sent = Batch.empty(*sizes, self._device)
-        self._batch = self._sent.inner(0) if places == 1 else self._sent
+        self._batches = [self._batch_of(update, places) for update in range(self.beat)]
         self._observations = torch.zeros(places, observation_size, pin_memory=pinned)
         self._learning: tuple[int, ...] = ()
-        self._pending: tuple[list[Seat], UpdateStatistics] | None = None
+        self._pending: tuple[list[Seat], list[UpdateStatistics]] | None = None
+
+    def _batch_of(self, update: int, places: int) -> Batch:
+        """View of what all places learn from in one update of a group, as the stack takes it."""
+        place = 0 if places == 1 else slice(None)
+        groups = (tensor.unflatten(0, (places, self.beat)) for tensor in vars(self._sent).values())
+        return Batch(*(group[place, update] for group in groups))
+
+    def _drawn_for(self, seat: Seat) -> Batch:
+        """View of what one place learns from in a group of updates."""
+        first = seat.place * self.beat
+        return self._drawn.part(slice(first, first + self.beat), seat.trainer.spec.size)
 
     def seat(self, seat: Seat) -> None:
         """Copy a trainer's networks into its place of the stack."""
         self._stack.put(seat.place, seat.trainer.agent)
-        for tensor in (self._observations, *vars(self._drawn).values()):
-            tensor[seat.place].zero_()
+        self._observations[seat.place].zero_()
+        for drawn in vars(self._drawn).values():
+            drawn.unflatten(0, (-1, self.beat))[seat.place].zero_()
 
     def settle(self, seat: Seat) -> None:
         """Copy the networks back."""
@@ -77,7 +90,7 @@ class StackedLearners:
                 actions[seat.place] = seat.trainer.explore(outputs[seat.place])
 
     def learn(self, seats: Sequence[Seat]) -> list[Job]:
-        """Take the gradient steps that are due; the last one is still under way at the return."""
+        """Begin the gradient steps that are due; a device is still at them at the return."""
         due = [seat for seat in seats if seat.fault is None and seat.trainer.due]
         if not due:
             return []
@@ -85,30 +98,24 @@ class StackedLearners:
         if places != self._learning:
             self._learning = places
             self._stack.learn_only(places)
-        for _ in range(self.beat):
-            self.collect()
-            self._update(due)
-        return []
-
-    def _update(self, seats: list[Seat]) -> None:
-        """Draw a batch for each trainer, and send the update to the device."""
-        self._crew.run(partial(self._draw, seat) for seat in seats)
+        self._crew.run(partial(self._draw, seat) for seat in due)
         for here, there in zip(vars(self._drawn).values(), vars(self._sent).values(), strict=True):
             there.copy_(here, non_blocking=True)
-        self._pending = seats, self._stack.update(self._batch)
+        self._pending = due, [self._stack.update(batch) for batch in self._batches]
+        return []
 
     def _draw(self, seat: Seat) -> None:
-        trainer = seat.trainer
-        trainer.sample(self._drawn.of(seat.place, trainer.spec.size))
+        seat.trainer.sample(self._drawn_for(seat))
 
     def collect(self) -> None:
-        """Fetch the statistics of the update, which waits for it."""
+        """Fetch the statistics of the updates, which waits for them."""
         if self._pending is None:
             return
-        seats, statistics = self._pending
+        seats, updates = self._pending
         self._pending = None
-        names = tuple(vars(statistics))
-        columns = torch.stack(tuple(vars(statistics).values()), dim=1).tolist()
-        for seat in seats:
-            values = dict(zip(names, columns[seat.place], strict=True))
-            seat.attempt(partial(seat.trainer.note_update, values))
+        names = tuple(vars(updates[0]))
+        rows = torch.stack([torch.stack(tuple(vars(each).values()), dim=1) for each in updates])
+        for update in rows.tolist():  # by place, by name
+            for seat in seats:
+                values = dict(zip(names, update[seat.place], strict=True))
+                seat.attempt(partial(seat.trainer.note_update, values))

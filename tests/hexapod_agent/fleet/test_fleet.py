@@ -72,7 +72,7 @@ def test_agents_of_a_stack_learn_at_once_after_one_of_them_fell(
     small_config, new_run, train_fleet, monkeypatch
 ):
     runs = [new_run(small_config, '', seed) for seed in (1, 2)]
-    advance, update = Robots.advance, StackedLearners._update
+    advance, collect = Robots.advance, StackedLearners.collect
     learning = []
 
     def advance_to_a_fall(robots, place):
@@ -80,17 +80,19 @@ def test_agents_of_a_stack_learn_at_once_after_one_of_them_fell(
         falls = outcome.step == 5 and place == 0 and not runs[0].summaries
         return replace(outcome, terminated=True, cause='fell') if falls else outcome
 
-    def counted_update(stack, seats):
-        learning.append(len(seats))
-        update(stack, seats)
+    def counted_collect(stack):
+        if stack._pending is not None:
+            seats, updates = stack._pending
+            learning.append((len(seats), len(updates)))
+        collect(stack)
 
     monkeypatch.setattr(Robots, 'advance', advance_to_a_fall)
-    monkeypatch.setattr(StackedLearners, '_update', counted_update)
+    monkeypatch.setattr(StackedLearners, 'collect', counted_collect)
     train_fleet(runs, places=2, stacked=True)
     assert [run.summaries[0].steps for run in runs] == [5, 40]
     # A batch is 16. The robot that fell begins again with the next group of 8: after 24 periods
     # the other has 23 transitions and it has 20. It is through after 48, the other after 80.
-    assert learning == [2] * 8 * 4 + [1] * 8 * 4
+    assert learning == [(2, 8)] * 4 + [(1, 8)] * 4
 
 
 def test_a_run_that_diverges_leaves_the_others_alone(
