@@ -134,8 +134,14 @@ class Workers:
         self._clients = [
             ActionClient(client.node, TrainRun, f'/bench_{n}/train_run') for n in range(CORES)
         ]
-        while not all(each.server_is_ready() for each in self._clients):
-            client.executor.spin_once(timeout_sec=0.1)
+        for each in self._clients:
+            client.warm_up(each, self._goal(episodes=1))
+
+    def _goal(self, episodes: int) -> TrainRun.Goal:
+        return TrainRun.Goal(
+            run_id='bench', observations=OBSERVATIONS, seed=1, episodes=episodes,
+            config=self._config,
+        )  # fmt: skip
 
     def speed(self) -> Speed:
         """Give each worker a run at once; count from the end of its first episode."""
@@ -146,10 +152,7 @@ class Workers:
                 cpu_s = session_cpu_s(self._launched[worker].pid)
                 ended[worker].append((time.perf_counter(), cpu_s))
 
-        goal = TrainRun.Goal(
-            run_id='bench', observations=OBSERVATIONS, seed=1, episodes=EPISODES,
-            config=self._config,
-        )  # fmt: skip
+        goal = self._goal(EPISODES)
         sent = [
             each.send_goal_async(goal, feedback_callback=partial(on_feedback, worker))
             for worker, each in enumerate(self._clients)

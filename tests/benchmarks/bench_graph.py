@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import shlex
 import signal
@@ -26,6 +27,7 @@ from rclpy.node import Node
 from rclpy.task import Future
 
 EPISODES = 4
+ANSWER_S = 15.0  # an episode takes one or two
 OBSERVATIONS = 'ABCDE'
 # The buffer never holds a batch, so nothing is learned.
 NO_LEARNER = 'ddpg: {batch_size: 100000}\n'
@@ -58,29 +60,39 @@ class Client:
         self.node = Node('bench')
         self.executor.add_node(self.node)
 
-    def result(self, future: Future):
-        """Spin until a future is done."""
+    def result(self, future: Future, limit_s: float = math.inf):
+        """Spin until a future is done; return None if it is not within a limit."""
+        deadline = time.monotonic() + limit_s
         while not future.done():
+            if time.monotonic() > deadline:
+                return None
             self.executor.spin_once(timeout_sec=0.1)
         return future.result()
+
+    def warm_up(self, client: ActionClient, goal: TrainRun.Goal) -> None:
+        """Have a worker do a run, and once more until its answers arrive.
+
+        A server that has just appeared may not know yet where this client listens.
+        """
+        while not client.server_is_ready():
+            self.executor.spin_once(timeout_sec=0.1)
+        while True:
+            handle = self.result(client.send_goal_async(goal), ANSWER_S)
+            if handle and handle.accepted and self.result(handle.get_result_async(), ANSWER_S):
+                return
 
     def worker(self, namespace: str, config: Path) -> float:
         """Return periods per second of a worker's second run; the first one warms it up."""
         client = ActionClient(self.node, TrainRun, f'/{namespace}/train_run')
-        while not client.server_is_ready():
-            self.executor.spin_once(timeout_sec=0.1)
-        for episodes in (1, EPISODES):
-            goal = TrainRun.Goal(
-                run_id='bench',
-                observations=OBSERVATIONS,
-                seed=1,
-                episodes=episodes,
-                config=str(config),
-            )
-            began = time.perf_counter()
-            handle = self.result(client.send_goal_async(goal))
-            response = self.result(handle.get_result_async())
-            assert response.result.message == '', response.result.message
+        goal = TrainRun.Goal(
+            run_id='bench', observations=OBSERVATIONS, seed=1, episodes=1, config=str(config)
+        )
+        self.warm_up(client, goal)
+        goal.episodes = EPISODES
+        began = time.perf_counter()
+        handle = self.result(client.send_goal_async(goal))
+        response = self.result(handle.get_result_async())
+        assert response.result.message == '', response.result.message
         return EPISODES * 600 / (time.perf_counter() - began)
 
 
