@@ -15,9 +15,10 @@ from hexapod_doe.campaigns.local_workers import LIFELINE, LocalWorkers
 from hexapod_node import lifeline
 
 WORKER = """
-import os, sys, time
+import os, signal, sys, time
 from hexapod_node.lifeline import follow
 follow()
+signal.signal(signal.SIGINT, signal.default_int_handler)  # as rclpy does, also in background jobs
 open(sys.argv[1], 'w').write(str(os.getpid()))
 try:
     time.sleep(600)
