@@ -118,12 +118,12 @@ class Ddpg:
     def update(self, batch: Batch) -> UpdateStatistics:
         """Take one gradient step: critic, actor, then both targets.
 
-        Args:
-            batch: A batch per agent (agents, batch, ...); for a stack of one (batch, ...).
-
         Moments of units that no longer fire decay to denormal numbers, on which the optimiser
         takes two thirds longer. They are zero here, and nowhere else: the physics may run in
         the same thread, and must not compute otherwise than in a process of its own.
+
+        Args:
+            batch: A batch per agent (agents, batch, ...); for a stack of one (batch, ...).
         """
         torch.set_flush_denormal(True)
         try:

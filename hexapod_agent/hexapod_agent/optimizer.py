@@ -68,7 +68,7 @@ class ClippedAdam:
         for array, _, scale in self._clipped:
             array.mul_(scale)
         parameters, gradients, mean, square, steps = self._moved
-        # What torch.optim.Adam ends up in; its way there takes longer than the step itself.
+        # What torch.optim.Adam ends up in, without all that it looks at on its way there.
         torch._foreach_add_(steps, 1.0)
         torch._fused_adam_(
             parameters, gradients, mean, square, [], steps,

@@ -148,7 +148,7 @@ def _parser() -> argparse.ArgumentParser:
     )  # fmt: skip
     parser.add_argument(
         '--threads', type=_count,
-        help="of a process; default one on the CPU, its share of the cores on another device",
+        help='of a process; default one on the CPU, its share of the cores on another device',
     )  # fmt: skip
     parser.add_argument(  # what this command tells its processes
         '--began', type=datetime.fromisoformat, default=datetime.now(UTC), help=argparse.SUPPRESS
