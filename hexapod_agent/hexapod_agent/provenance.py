@@ -1,7 +1,11 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a run was made with: versions of the libraries, of the interpreter and of this code."""
+"""What a run was made with: libraries, interpreter, processor and this code.
+
+Its numbers depend on them to the last bit: numpy and torch choose by version and by the
+processor's instructions in which order a product of matrices is summed.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +16,9 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 _LIBRARIES = ('numpy', 'torch', 'mujoco', 'gymnasium', 'rclpy')
+_PROCESSORS = Path('/proc/cpuinfo')
+# What libraries choose their arithmetic by.
+_FLAGS = ('avx2', 'fma', 'avx512f', 'avx512_vnni', 'avx512_bf16', 'amx_bf16')
 
 
 @lru_cache(maxsize=1)
@@ -21,6 +28,7 @@ def provenance() -> dict[str, str]:
     return found | {
         'version.python': platform.python_version(),
         'machine': platform.machine(),
+        'processor': _processor(),
         'git_commit': _git_commit(),
     }
 
@@ -30,6 +38,19 @@ def _version(name: str) -> str:
         return version(name)
     except PackageNotFoundError:
         return 'unknown'
+
+
+def _processor() -> str:
+    """Return the processor's maker and the instructions that arithmetic is chosen by."""
+    try:
+        lines = _PROCESSORS.read_text(encoding='utf-8').splitlines()
+    except OSError:
+        return 'unknown'
+    entries = dict(line.replace('\t', '').split(':', 1) for line in lines if ':' in line)
+    flags = entries.get('flags', '').split()
+    return ' '.join(
+        [entries.get('vendor_id', 'unknown').strip(), *(flag for flag in _FLAGS if flag in flags)]
+    )
 
 
 def _git_commit() -> str:
