@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from hexapod_sim.sensors import read
+from hexapod_sim.sums import ordered_sum
 from numpy.typing import NDArray
 
 from hexapod_agent.env import HexapodLine
@@ -120,9 +121,9 @@ def summarize(episodes: list[Episode]) -> Evaluation:
     """Reduce episodes to figures."""
     returns = [episode.episode_return for episode in episodes]
     offsets = np.abs(np.concatenate([episode.offsets[-_LAST_STEPS:] for episode in episodes]))
-    distance = sum(episode.distance for episode in episodes)
+    distance = ordered_sum(episode.distance for episode in episodes)
     time = sum(episode.offsets.size for episode in episodes) * _PERIOD_S
-    energy = sum(episode.energy for episode in episodes)
+    energy = ordered_sum(episode.energy for episode in episodes)
     return Evaluation(
         starts=len(episodes),
         final_average_reward=float(np.mean(returns)),

@@ -12,6 +12,7 @@ from annotated_types import Interval
 
 from hexapod_sim import robot
 from hexapod_sim.simulation import Simulation, SimulationDivergedError
+from hexapod_sim.sums import ordered_sum
 
 _PERIOD_S = robot.CONTROL_PERIOD_NS * 1e-9
 TERM_NAMES = ('velocity', 'closeness', 'orientation', 'height', 'alive')
@@ -187,7 +188,7 @@ def judge(
     truncated = not terminated and step >= config.time_limit_steps
     return Outcome(
         step,
-        sum(terms.values()),
+        ordered_sum(terms.values()),
         terms,
         terminated,
         truncated,

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 from hexapod_sim.robot import GRAVITY, TOTAL_MASS
+from hexapod_sim.sums import ordered_sum
 from numpy.typing import NDArray
 
 from hexapod_agent.contract.fields import RANGE_LIMITS
@@ -36,7 +37,8 @@ def check_weight(subjects: Sequence[Subject]) -> Iterator[Finding]:
     """Check that the feet together carry the robot, which tells the unit of their forces."""
     if subjects[0].channel.readings != ('foot_forces',):
         return
-    normal = sum(float(np.abs(subject.stack('wrench.force')[:, 2]).mean()) for subject in subjects)
+    forces = (np.abs(subject.stack('wrench.force')[:, 2]) for subject in subjects)
+    normal = ordered_sum(float(force.mean()) for force in forces)
     if _LEAST_WEIGHT <= normal <= _MOST_WEIGHT:
         return
     name, factor = other_unit('N', normal, _MOST_WEIGHT, _LEAST_WEIGHT)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import yaml
+from hexapod_sim.sums import ordered_sum
 
 from hexapod_doe.analysis.findings import Device
 from hexapod_doe.errors import AnalysisError
@@ -49,7 +50,7 @@ class DeviceTable:
             for chosen in combinations(useful, size)
             if wanted <= set(''.join(device.yields for device in chosen))
         )
-        return min(sets, key=lambda chosen: (sum(d.cost for d in chosen), len(chosen)))
+        return min(sets, key=lambda chosen: (ordered_sum(d.cost for d in chosen), len(chosen)))
 
 
 def read_devices(path: Path | None = None) -> DeviceTable:

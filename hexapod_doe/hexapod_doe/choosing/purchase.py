@@ -9,6 +9,7 @@ Decisions come from the draws of the selected model, numbers with intervals from
 from collections.abc import Sequence
 
 import numpy as np
+from hexapod_sim.sums import ordered_sum
 
 from hexapod_doe.analysis.findings import Breakage, Device, PricedSet, Purchase
 from hexapod_doe.choosing.devices import DeviceTable
@@ -36,7 +37,7 @@ def purchase(
     if delta is None:
         delta = table.delta_share * abs(float(np.nanmax(outlook.fits)))
     devices = [table.cheapest(letters_of(label)) for label in outlook.labels]
-    cost = np.array([sum(device.cost for device in needed) for needed in devices])
+    cost = np.array([ordered_sum(device.cost for device in needed) for needed in devices])
     best = outlook.draws.max(axis=1, keepdims=True)
     not_worse = (outlook.draws >= best - delta).mean(axis=0)
     p_front = pareto(cost, outlook.draws).mean(axis=0)
@@ -79,8 +80,8 @@ def _priced_sets(
             label=label,
             devices=tuple(device.name for device in devices[i]),
             cost=float(cost[i]),
-            mass=sum(device.mass for device in devices[i]),
-            power=sum(device.power for device in devices[i]),
+            mass=ordered_sum(device.mass for device in devices[i]),
+            power=ordered_sum(device.power for device in devices[i]),
             failure_probability=any_breaks(devices[i]),
             fit=float(stated.fits[i]),
             ci=(float(low[i]), float(high[i])),

@@ -17,6 +17,7 @@ from typing import Any
 import yaml
 from hexapod_agent.config import AgentConfig
 from hexapod_sim.simulation import roll_pitch_yaw
+from hexapod_sim.sums import ordered_sum
 from hexapod_sim.task import DIVERGED, Outcome, TaskConfig, diverged, judge, line_at
 
 from hexapod_doe.bags.bag_file import BagFile
@@ -48,18 +49,18 @@ class Rescored:
     @property
     def episode_return(self) -> float:
         """Sum of the rewards."""
-        return sum(outcome.reward for outcome in self.outcomes)
+        return ordered_sum(outcome.reward for outcome in self.outcomes)
 
     @property
     def recorded_return(self) -> float | None:
         """Sum of the recorded rewards; None where there are none."""
-        return sum(self.recorded) if self.recorded else None
+        return ordered_sum(self.recorded) if self.recorded else None
 
     @property
     def terms(self) -> dict[str, float]:
         """Sums of the reward terms."""
         names = self.outcomes[0].terms if self.outcomes else ()
-        return {name: sum(o.terms[name] for o in self.outcomes) for name in names}
+        return {name: ordered_sum(o.terms[name] for o in self.outcomes) for name in names}
 
     @property
     def equal(self) -> int:
