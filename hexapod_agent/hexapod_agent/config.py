@@ -78,13 +78,18 @@ class AgentConfig:
         _check_keys(cls, changes, source, '')
         values = _merged(_read(files('hexapod_agent') / ARTICLE), changes)
         try:
-            return TypeAdapter(cls).validate_python(values)
+            config: AgentConfig = TypeAdapter(cls).validate_python(values)
         except ValidationError as error:
             first = error.errors()[0]
             key = '.'.join(str(part) for part in first['loc'])
             raise ConfigError(
                 f'{source}: {key} is {first["input"]!r}, expected: {first["msg"]}'
             ) from error
+        try:
+            _ = config.ddpg.group_size
+        except ValueError as error:
+            raise ConfigError(f'{source}: {error}') from error
+        return config
 
     @classmethod
     def load(cls, path: str | Path | None = None) -> 'AgentConfig':
@@ -101,7 +106,11 @@ class AgentConfig:
         Raises:
             ConfigError: As for `load`.
         """
-        return self.from_mapping(_merged(self.to_mapping(), _changes(path)), str(path))
+        return self.changed(_changes(path), str(path))
+
+    def changed(self, changes: Mapping[str, Any], source: str) -> 'AgentConfig':
+        """Build a configuration from this one with some values changed, as `from_mapping` does."""
+        return self.from_mapping(_merged(self.to_mapping(), changes), source)
 
 
 def _changes(path: str | Path) -> Mapping[str, Any]:

@@ -13,8 +13,9 @@ from typing import Any
 import torch
 from torch import Tensor
 
+from hexapod_agent.action_value import ActionValue
 from hexapod_agent.hyperparameters import ActorConfig, CriticConfig
-from hexapod_agent.networks import Actor, Critic, initial_bounds
+from hexapod_agent.networks import Actor, initial_bounds
 from hexapod_agent.optimizer import ClippedAdam
 from hexapod_agent.parameters import ParameterStack
 from hexapod_agent.replay import Batch
@@ -35,12 +36,16 @@ class UpdateStatistics:
     mean_q: Tensor
 
 
+_CRITICS = ('critic', 'twin_critic')  # names in a state
+
+
 class Ddpg:
     """Actor, critic, their targets and optimisers.
 
     Attributes:
         actor_parameters: Online actor.
-        critic_parameters: Online critic.
+        critic_parameters: Online critic, the first of two.
+        actor_config: The policy's layers and training.
 
     Args:
         observation_size: Numbers of an observation.
@@ -71,7 +76,7 @@ class Ddpg:
         device: torch.device | str = 'cpu',
     ) -> None:
         sizes = (observation_size, action_size)
-        self._actor_config = actor
+        self.actor_config = actor
         self._target_smoothing = target_smoothing
         self._smoothing: float | Tensor = target_smoothing
         self._single = agents == 1
@@ -79,32 +84,32 @@ class Ddpg:
         self.actor_parameters = ParameterStack(
             Actor.shapes(*sizes, actor.hidden), agents, dtype, device
         )
-        self.critic_parameters = ParameterStack(
-            Critic.shapes(*sizes, critic.hidden, critic.merge), agents, dtype, device
-        )
+        self._critics = [
+            ActionValue(*sizes, critic, batch_size, agents, dtype, hidden_dtype, device)
+            for _ in range(2 if critic.twin else 1)
+        ]
+        self.critic_parameters = self._critics[0].parameters
         if generator is not None:
-            for parameters in (self.actor_parameters, self.critic_parameters):
+            for parameters in (self.actor_parameters, *(c.parameters for c in self._critics)):
                 parameters.draw(initial_bounds(parameters.shapes), generator)
-            self.critic_parameters.arrays['output.bias'].add_(critic.initial_value)
+            for each in self._critics:
+                each.parameters.arrays['output.bias'].add_(critic.initial_value)
+                each.target_parameters.flat.copy_(each.parameters.flat)
         self._actor_target_parameters = self.actor_parameters.copy()
-        self._critic_target_parameters = self.critic_parameters.copy()
         self._actor_optimizer = ClippedAdam(
             self.actor_parameters, actor.learning_rate, actor.l2, actor.gradient_threshold
         )
-        self._critic_optimizer = ClippedAdam(
-            self.critic_parameters, critic.learning_rate, critic.l2, critic.gradient_threshold
-        )
 
         # Acting stays in the full format; the updates' hidden layers may not.
-        self._policy = Actor(self.actor_parameters, 1)
-        actor_gradients = self._actor_optimizer.gradients
-        critic_gradients = self._critic_optimizer.gradients
-        self._actor = Actor(self.actor_parameters, batch_size, actor_gradients, hidden_dtype)
-        self._critic = Critic(self.critic_parameters, batch_size, critic_gradients, hidden_dtype)
-        self._target_actor = Actor(self._actor_target_parameters, batch_size, None, hidden_dtype)
-        self._target_critic = Critic(
-            self._critic_target_parameters, batch_size, None, hidden_dtype
+        norm = actor.layer_norm
+        self._policy = Actor(self.actor_parameters, 1, layer_norm=norm)
+        gradients = self._actor_optimizer.gradients
+        self._actor = Actor(self.actor_parameters, batch_size, gradients, hidden_dtype, norm)
+        self._target_actor = Actor(
+            self._actor_target_parameters, batch_size, None, hidden_dtype, norm
         )
+        if generator is not None:
+            self._refresh()
 
     def _inner(self, tensor: Tensor) -> Tensor:
         """Drop the leading dimension of a stack of one, as the layers expect."""
@@ -133,43 +138,44 @@ class Ddpg:
 
     def learn_only(self, agents: Sequence[int]) -> None:
         """Let an update leave all other agents of the stack as they are, from now on."""
-        for optimizer in (self._actor_optimizer, self._critic_optimizer):
+        for optimizer in self._optimizers().values():
             optimizer.move_only(agents)
         smoothing = torch.zeros(self.actor_parameters.agents, 1)
         smoothing[list(agents)] = self._target_smoothing
         self._smoothing = smoothing.to(self.actor_parameters.flat)
 
+    def set_rate_share(self, share: float, agent: int = 0) -> None:
+        """Let an agent of the stack learn at so much of the learning rates from now on."""
+        for optimizer in self._optimizers().values():
+            optimizer.set_share(agent, share)
+
     def _update(self, batch: Batch) -> UpdateStatistics:
         critic_loss = self._update_critic(batch)
         actor_loss, mean_q = self._update_actor(batch)
-        for target, online in (
-            (self._critic_target_parameters, self.critic_parameters),
-            (self._actor_target_parameters, self.actor_parameters),
-        ):
-            target.flat.lerp_(online.flat, self._smoothing)
+        for critic in self._critics:
+            critic.follow(self._smoothing)
+        self._actor_target_parameters.flat.lerp_(self.actor_parameters.flat, self._smoothing)
         self._target_actor.refresh()
-        self._target_critic.refresh()
         return UpdateStatistics(critic_loss.view(-1), actor_loss.view(-1), mean_q.view(-1))
 
     def _update_critic(self, batch: Batch) -> Tensor:
-        """Move Q(s, a) towards y = r + bootstrap Q'(s', mu'(s'))."""
+        """Move every Q(s, a) towards y = r + bootstrap min Q'(s', mu'(s'))."""
         next_action = self._target_actor.forward(batch.next_observation)
-        target = self._target_critic.forward(batch.next_observation, next_action)
+        target, *others = [
+            critic.target.forward(batch.next_observation, next_action) for critic in self._critics
+        ]
+        for other in others:
+            torch.minimum(target, other, out=target)
         torch.addcmul(batch.reward, batch.bootstrap, target, out=target)
-        # L = mean (Q - y)², dL/dQ = 2 (Q - y) / batch
-        error = self._critic.forward(batch.observation, batch.action).sub_(target)
-        loss = torch.linalg.vecdot(error, error, dim=-2) / error.shape[-2]
-        error.mul_(2.0 / error.shape[-2])
-        self._critic.backward(error)
-        self._critic_optimizer.step()
-        self._critic.refresh()
-        return loss
+        losses = [critic.learn(batch, target) for critic in self._critics]
+        return losses[0] if len(losses) == 1 else torch.stack(losses).mean(dim=0)
 
     def _update_actor(self, batch: Batch) -> tuple[Tensor, Tensor]:
         """Move mu(s) up the slope of Q(s, mu(s)) under the critic that was just updated."""
-        config = self._actor_config
+        config = self.actor_config
         action = self._actor.forward(batch.observation)
-        value = self._critic.forward(batch.observation, action)
+        critic = self._critics[0].online
+        value = critic.forward(batch.observation, action)
         mean_q, size = value.mean(dim=-2), value.shape[-2]
         # L = -mean Q / n + c mean z², dL/dQ = -1 / (n batch), n = mean |Q| or 1
         magnitude = torch.linalg.vector_norm(value, 1, dim=-2) / size
@@ -180,7 +186,7 @@ class Ddpg:
             z = self._actor.preactivation.flatten(-2)
             loss.add_(torch.linalg.vecdot(z, z).unsqueeze(-1), alpha=penalty)
         value.copy_(scale.mul_(-size).reciprocal_().unsqueeze(-2))
-        self._actor.backward(self._critic.action_gradient(value), 2.0 * penalty)
+        self._actor.backward(critic.action_gradient(value), 2.0 * penalty)
         self._actor_optimizer.step()
         self._actor.refresh()
         return loss, mean_q
@@ -188,8 +194,7 @@ class Ddpg:
     def state_dict(self) -> dict[str, Any]:
         """Networks, targets and optimisers."""
         return {name: part.flat for name, part in self._stacks().items()} | {
-            'actor_optimizer': self._actor_optimizer.state_dict(),
-            'critic_optimizer': self._critic_optimizer.state_dict(),
+            name: optimizer.state_dict() for name, optimizer in self._optimizers().items()
         }
 
     def acting_state(self) -> dict[str, Any]:
@@ -201,9 +206,9 @@ class Ddpg:
         for name, part in self._stacks().items():
             if name in state:
                 part.flat.copy_(state[name])
-        if 'actor_optimizer' in state:
-            self._actor_optimizer.load_state_dict(state['actor_optimizer'])
-            self._critic_optimizer.load_state_dict(state['critic_optimizer'])
+        for name, optimizer in self._optimizers().items():
+            if name in state:
+                optimizer.load_state_dict(state[name])
         self._refresh()
 
     def put(self, agent: int, single: 'Ddpg') -> None:
@@ -213,27 +218,35 @@ class Ddpg:
         """
         for mine, its in zip(self._stacks().values(), single._stacks().values(), strict=True):
             mine.put(agent, its)
-        self._actor_optimizer.put(agent, single._actor_optimizer)
-        self._critic_optimizer.put(agent, single._critic_optimizer)
+        optimizers = zip(self._optimizers().values(), single._optimizers().values(), strict=True)
+        for ours, theirs in optimizers:
+            ours.put(agent, theirs)
         self._refresh()
 
     def take(self, agent: int, single: 'Ddpg') -> None:
         """Write an agent of this stack to a stack of one: the inverse of `put`."""
         for mine, its in zip(self._stacks().values(), single._stacks().values(), strict=True):
             mine.take(agent, its)
-        self._actor_optimizer.take(agent, single._actor_optimizer)
-        self._critic_optimizer.take(agent, single._critic_optimizer)
+        optimizers = zip(self._optimizers().values(), single._optimizers().values(), strict=True)
+        for ours, theirs in optimizers:
+            ours.take(agent, theirs)
         single._refresh()
 
     def _refresh(self) -> None:
         """Let the updates' networks take over parameters that have moved."""
-        for network in (self._actor, self._critic, self._target_actor, self._target_critic):
-            network.refresh()
+        self._actor.refresh()
+        self._target_actor.refresh()
+        for critic in self._critics:
+            critic.refresh()
 
     def _stacks(self) -> dict[str, ParameterStack]:
-        return {
-            'actor': self.actor_parameters,
-            'critic': self.critic_parameters,
-            'target_actor': self._actor_target_parameters,
-            'target_critic': self._critic_target_parameters,
+        stacks = {'actor': self.actor_parameters, 'target_actor': self._actor_target_parameters}
+        for name, critic in zip(_CRITICS, self._critics, strict=False):
+            stacks |= {name: critic.parameters, f'target_{name}': critic.target_parameters}
+        return stacks
+
+    def _optimizers(self) -> dict[str, ClippedAdam]:
+        critics = zip(_CRITICS, self._critics, strict=False)
+        return {'actor_optimizer': self._actor_optimizer} | {
+            f'{name}_optimizer': critic.optimizer for name, critic in critics
         }

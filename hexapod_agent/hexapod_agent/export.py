@@ -22,6 +22,7 @@ from onnx import TensorProto, helper, numpy_helper
 
 from hexapod_agent import checkpoint
 from hexapod_agent.config import ConfigError
+from hexapod_agent.layers import NORM_EPSILON
 from hexapod_agent.observation import PREVIOUS_ACTION, ObservationSpec
 from hexapod_agent.training import Trainer
 
@@ -66,8 +67,15 @@ def policy_model(trainer: Trainer) -> onnx.ModelProto:
     ]
     arrays = trainer.agent.actor_parameters.arrays
     weights = {name: array[0].numpy() for name, array in arrays.items()}
+    layers = _layers(weights, trainer.config.actor.layer_norm)
+    constants |= {
+        name: np.ones(weights[name.replace('.gain', '.bias')].shape, np.float32)
+        for node in layers
+        for name in node.input
+        if name.endswith('.gain')
+    }
     graph = helper.make_graph(
-        [*nodes, *_layers(weights)],
+        [*nodes, *layers],
         'hexapod_policy',
         [
             helper.make_tensor_value_info(key, TensorProto.DOUBLE, [_BATCH, size])
@@ -85,16 +93,26 @@ def policy_model(trainer: Trainer) -> onnx.ModelProto:
     return model
 
 
-def _layers(weights: Mapping[str, NDArray[np.float32]]) -> list[onnx.NodeProto]:
-    """Affine layers with ReLU between them, and tanh after the last."""
+def _layers(weights: Mapping[str, NDArray[np.float32]], normalize: bool) -> list[onnx.NodeProto]:
+    """Affine layers with ReLU between them, normalised before it or not, and tanh at the end."""
     nodes, x = [], 'observation'
     names = [name.removesuffix('.weight') for name in weights if name.endswith('.weight')]
     for name in names:
         arrays = [f'{name}.weight', f'{name}.bias']
         nodes.append(helper.make_node('Gemm', [x, *arrays], [f'{name}.sum'], transB=1))
         last = name == names[-1]
-        x = _ACTION if last else f'{name}.output'
-        nodes.append(helper.make_node('Tanh' if last else 'Relu', [f'{name}.sum'], [x]))
+        x = f'{name}.sum'
+        if normalize and not last:
+            x = f'{name}.normalized'
+            nodes.append(
+                helper.make_node(
+                    'LayerNormalization', [f'{name}.sum', f'{name}.gain'], [x],
+                    epsilon=NORM_EPSILON,
+                )
+            )  # fmt: skip
+        output = _ACTION if last else f'{name}.output'
+        nodes.append(helper.make_node('Tanh' if last else 'Relu', [x], [output]))
+        x = output
     return nodes
 
 

@@ -7,9 +7,10 @@ No torch here: the environment reads the same file as the learner.
 """
 
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Literal
 
-from pydantic import PositiveInt
+from pydantic import NonNegativeFloat, PositiveFloat, PositiveInt
 
 
 @dataclass(frozen=True)
@@ -23,6 +24,7 @@ class ActorConfig:
         gradient_threshold: Largest L2 norm of an array's gradient.
         preactivation_penalty: Weight c of the loss term c mean(z²), z the output before tanh.
         normalize_loss: Whether the loss's value term is divided by mean |Q| of the batch.
+        layer_norm: Whether each hidden layer is normalised before its ReLU.
     """
 
     hidden: tuple[int, ...]
@@ -31,6 +33,7 @@ class ActorConfig:
     gradient_threshold: float
     preactivation_penalty: float
     normalize_loss: bool
+    layer_norm: bool
 
 
 @dataclass(frozen=True)
@@ -44,6 +47,8 @@ class CriticConfig:
         learning_rate: Adam's step size.
         l2: Factor of the L2 term in the gradient, weights only.
         gradient_threshold: Largest L2 norm of an array's gradient.
+        layer_norm: Whether each hidden layer is normalised before its ReLU.
+        twin: Whether there are two, the lesser of whose target values is learned from.
     """
 
     hidden: tuple[int, ...]
@@ -52,6 +57,8 @@ class CriticConfig:
     learning_rate: float
     l2: float
     gradient_threshold: float
+    layer_norm: bool
+    twin: bool
 
 
 @dataclass(frozen=True)
@@ -64,8 +71,9 @@ class DdpgConfig:
         discount: Discount factor per step.
         n_step: Rewards summed before the value of a later observation takes over.
         target_smoothing: Share of the online network that moves into its target per update.
-        update_every: Steps between two groups of updates; a group has as many updates. Steps at
-            the end of an episode that fill no group go into the buffer alone.
+        update_every: Steps between two groups of updates. Steps at the end of an episode that
+            fill no group go into the buffer alone.
+        update_ratio: Updates per step; those of a group are a whole number.
         reward_scale: Factor of the reward as the critic learns it.
     """
 
@@ -75,7 +83,25 @@ class DdpgConfig:
     n_step: int
     target_smoothing: float
     update_every: PositiveInt
+    update_ratio: PositiveFloat
     reward_scale: float
+
+    @property
+    def group_size(self) -> int:
+        """Updates of a group.
+
+        Raises:
+            ValueError: They are not a whole number.
+        """
+        # As written, not as stored: 0.1 of 10 steps is one update.
+        updates = Fraction(str(self.update_ratio)) * self.update_every
+        if updates.denominator != 1:
+            raise ValueError(
+                f'ddpg.update_ratio is {self.update_ratio}, expected a multiple of '
+                f'1/{self.update_every}: after each {self.update_every} steps '
+                f'(ddpg.update_every) comes a whole number of updates, not {float(updates):g}'
+            )
+        return updates.numerator
 
 
 @dataclass(frozen=True)
@@ -105,6 +131,8 @@ class TrainingConfig:
         episodes: Episodes of a run.
         window: Last returns that the final average reward is the mean of.
         checkpoint_every: Episodes between two checkpoints.
+        final_rate: Share of both learning rates that is left at the last of `episodes`, towards
+            which they fall by the same amount after each; it lasts in episodes after that.
         precision: Arithmetic of an update. 'float32' is torch's default. 'float32_fast' takes
             the machine's fastest product of float32 matrices, which may round the factors
             where the machine has units for that. 'bfloat16' computes hidden layers so; the
@@ -114,4 +142,5 @@ class TrainingConfig:
     episodes: int
     window: int
     checkpoint_every: int
+    final_rate: NonNegativeFloat
     precision: Literal['float32', 'float32_fast', 'bfloat16']

@@ -12,6 +12,8 @@ from torch import Tensor
 
 from hexapod_agent.parameters import ParameterStack
 
+NORM_EPSILON = 1e-5  # added to a row's variance
+
 
 class Cast:
     """Conversion to a number format through a buffer; free where there is nothing to convert."""
@@ -135,6 +137,39 @@ class SingleUnit(Dense):
     def backward_input(self, y_gradient: Tensor) -> Tensor:
         """Gradient of the input, an outer product."""
         return torch.mul(y_gradient, self.weight, out=self._input_gradient)
+
+
+class Activation:
+    """ReLU, behind a normalisation of each row to mean 0 and variance 1 if wanted.
+
+    The normalisation has no gain and no shift: the next layer's weights and the bias are there.
+
+    Attributes:
+        output: What the last `forward` gave.
+    """
+
+    def __init__(self, normalize: bool) -> None:
+        self._normalize = normalize
+
+    def forward(self, x: Tensor) -> Tensor:
+        """Activate x, in place where nothing is normalised."""
+        if self._normalize:
+            self._x = x
+            x, self._mean, self._reciprocal = torch.native_layer_norm(
+                x, x.shape[-1:], None, None, NORM_EPSILON
+            )
+        self.output = torch.relu_(x)
+        return self.output
+
+    def backward(self, gradient: Tensor) -> Tensor:
+        """Gradient of the last x, given that of the output, which is overwritten."""
+        gradient = relu_backward(gradient, self.output)
+        if self._normalize:
+            gradient, _, _ = torch.ops.aten.native_layer_norm_backward(
+                gradient, self._x, self._x.shape[-1:], self._mean, self._reciprocal,
+                None, None, (True, False, False),
+            )  # fmt: skip
+        return gradient
 
 
 def relu_backward(gradient: Tensor, activation: Tensor) -> Tensor:

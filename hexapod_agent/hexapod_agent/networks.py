@@ -16,7 +16,14 @@ from itertools import pairwise
 import torch
 from torch import Tensor
 
-from hexapod_agent.layers import Cast, Dense, Shortened, SingleUnit, layer_shapes, relu_backward
+from hexapod_agent.layers import (
+    Activation,
+    Cast,
+    Dense,
+    Shortened,
+    SingleUnit,
+    layer_shapes,
+)
 from hexapod_agent.parameters import ParameterStack
 
 OUTPUT_BOUND = 5e-3  # of the output layers' initial weights
@@ -41,6 +48,7 @@ class Actor:
         batch: Observations per pass.
         gradients: Filled by `backward`; None for a pass that never goes back.
         dtype: Number format of the hidden layers; that of the parameters if None.
+        layer_norm: Whether each hidden layer is normalised before its ReLU.
     """
 
     @staticmethod
@@ -59,11 +67,13 @@ class Actor:
         batch: int,
         gradients: ParameterStack | None = None,
         dtype: torch.dtype | None = None,
+        layer_norm: bool = False,
     ) -> None:
         wide = parameters.flat.dtype
         narrow = dtype or wide
         self._shortened = short = Shortened(parameters, gradients, narrow)
         self._hidden = _branch(short, 'hidden', batch)
+        self._activations = [Activation(layer_norm) for _ in self._hidden]
         self._output = Dense(parameters, gradients, 'output', batch)
         last = self._hidden[-1].output
         self._widen = Cast(last, wide)
@@ -81,8 +91,8 @@ class Actor:
     def forward(self, observation: Tensor) -> Tensor:
         """Actions of a batch, in the buffer `action`; `preactivation` holds them before tanh."""
         self._x = x = self._narrow_input(observation)
-        for layer in self._hidden:
-            x = torch.relu_(layer.forward(x))
+        for layer, activation in zip(self._hidden, self._activations, strict=True):
+            x = activation.forward(layer.forward(x))
         self._features = self._widen(x)
         self._output.forward(self._features)
         return torch.tanh(self.preactivation, out=self.action)
@@ -101,7 +111,8 @@ class Actor:
         )
         gradient.add_(self.preactivation, alpha=preactivation_factor)
         hidden = self._narrow(self._output.backward_input(gradient))
-        _branch_backward(self._hidden, self._x, relu_backward(hidden, self._hidden[-1].output))
+        gradient_in = self._activations[-1].backward(hidden)
+        _branch_backward(self._hidden, self._activations[:-1], self._x, gradient_in)
         self._shortened.widen_gradients()
         self._output.backward(self._features, gradient)
 
@@ -117,6 +128,7 @@ class Critic:
         batch: Pairs of observation and action per pass.
         gradients: Filled by `backward`; None for a pass that never goes back.
         dtype: Number format of the branches; that of the parameters if None.
+        layer_norm: Whether each hidden layer is normalised before its ReLU, the merged one too.
     """
 
     @staticmethod
@@ -137,11 +149,13 @@ class Critic:
         batch: int,
         gradients: ParameterStack | None = None,
         dtype: torch.dtype | None = None,
+        layer_norm: bool = False,
     ) -> None:
         wide = parameters.flat.dtype
         narrow = dtype or wide
         self._shortened = short = Shortened(parameters, gradients, narrow)
         self._observation = _branch(short, 'observation', batch)
+        self._activations = [Activation(layer_norm) for _ in self._observation]
         self._action = Dense(short.parameters, short.gradients, 'action', batch)
         self._output = SingleUnit(parameters, gradients, 'output', batch)
         self.value = self._output.output
@@ -164,8 +178,9 @@ class Critic:
         """Values (..., batch, 1) in the buffer `value`."""
         self._s = x = self._narrow_observation(observation)
         self._a = self._narrow_action(action)
-        for layer in self._observation[:-1]:
-            x = torch.relu_(layer.forward(x))
+        *below, merge = self._activations
+        for layer, activation in zip(self._observation, below, strict=False):
+            x = activation.forward(layer.forward(x))
         last = self._observation[-1]
         if self._append:
             self._merged[..., self._observation_part] = last.forward(x)
@@ -173,14 +188,15 @@ class Critic:
         else:
             last.product(x, last.bias + self._action.bias, self._merged)
             self._action.product(self._a, self._merged, self._merged)
-        self._features = self._widen(torch.relu_(self._merged))
+        self._features = self._widen(merge.forward(self._merged))
         return self._output.forward(self._features)
 
     def backward(self, value_gradient: Tensor) -> None:
         """Fill the gradients of the last `forward`, given dL/dQ (..., batch, 1)."""
         merged = self._merged_gradient(value_gradient)
         self._action.backward(self._a, merged[..., self._action_part])
-        _branch_backward(self._observation, self._s, merged[..., self._observation_part])
+        part = merged[..., self._observation_part]
+        _branch_backward(self._observation, self._activations[:-1], self._s, part)
         self._shortened.widen_gradients()
         self._output.backward(self._features, value_gradient)
 
@@ -192,7 +208,7 @@ class Critic:
     def _merged_gradient(self, value_gradient: Tensor) -> Tensor:
         """Gradient before the ReLU that follows the merge."""
         gradient = self._narrow(self._output.backward_input(value_gradient))
-        return relu_backward(gradient, self._merged)
+        return self._activations[-1].backward(gradient)
 
 
 def _branch(short: Shortened, prefix: str, batch: int) -> list[Dense]:
@@ -205,9 +221,11 @@ def _branch(short: Shortened, prefix: str, batch: int) -> list[Dense]:
     ]
 
 
-def _branch_backward(layers: list[Dense], x: Tensor, gradient: Tensor) -> None:
-    """Fill the gradients of layers with ReLU between them, given that of the last one's output."""
-    for below, layer in zip(layers[-2::-1], layers[:0:-1], strict=True):
+def _branch_backward(
+    layers: list[Dense], activations: list[Activation], x: Tensor, gradient: Tensor
+) -> None:
+    """Fill the gradients of layers with activations between them, given the last output's."""
+    for below, layer in zip(activations[::-1], layers[:0:-1], strict=True):
         layer.backward(below.output, gradient)
-        gradient = relu_backward(layer.backward_input(gradient), below.output)
+        gradient = below.backward(layer.backward_input(gradient))
     layers[0].backward(x, gradient)

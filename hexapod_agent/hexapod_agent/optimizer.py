@@ -33,6 +33,7 @@ class ClippedAdam:
     ) -> None:
         self.gradients = parameters.like()
         self._learning_rate = learning_rate
+        self._shares = [1.0] * parameters.agents
         self._l2 = l2
         self._threshold = threshold
         self._flat = parameters.flat
@@ -47,11 +48,16 @@ class ClippedAdam:
         self._mean, self._square = parameters.like(), parameters.like()
         # Agents that began at different times are at different steps.
         self._steps = self._flat.new_zeros(parameters.agents, dtype=torch.float32)
-        self._moved = self._rows(range(parameters.agents))
+        self.move_only(range(parameters.agents))
 
     def move_only(self, agents: Sequence[int]) -> None:
         """Leave the parameters of all other agents alone from now on."""
+        self._agents = list(agents)
         self._moved = self._rows(agents)
+
+    def set_share(self, agent: int, share: float) -> None:
+        """Let an agent step by so much of the learning rate from now on."""
+        self._shares[agent] = share
 
     def _rows(self, agents: Sequence[int]) -> list[list[Tensor]]:
         """Parameters, gradients, moments and step counts, a view per agent."""
@@ -67,12 +73,20 @@ class ClippedAdam:
         self._norms.clamp_(min=self._threshold).reciprocal_().mul_(self._threshold)
         for array, _, scale in self._clipped:
             array.mul_(scale)
-        parameters, gradients, mean, square, steps = self._moved
-        # What torch.optim.Adam ends up in, without all that it looks at on its way there.
-        torch._foreach_add_(steps, 1.0)
+        torch._foreach_add_(self._moved[-1], 1.0)
+        shares = [self._shares[agent] for agent in self._agents]
+        if len(set(shares)) == 1:
+            self._adam(self._moved, shares[0])
+            return
+        for place, share in enumerate(shares):
+            self._adam([rows[place : place + 1] for rows in self._moved], share)
+
+    def _adam(self, rows: list[list[Tensor]], share: float) -> None:
+        """Move agents by what torch.optim.Adam ends up in, without all that it looks at first."""
+        parameters, gradients, mean, square, steps = rows
         torch._fused_adam_(
             parameters, gradients, mean, square, [], steps,
-            lr=self._learning_rate, beta1=_DECAY_MEAN, beta2=_DECAY_SQUARE,
+            lr=share * self._learning_rate, beta1=_DECAY_MEAN, beta2=_DECAY_SQUARE,
             weight_decay=0.0, eps=_EPSILON, amsgrad=False, maximize=False,
         )  # fmt: skip
 

@@ -10,6 +10,7 @@ from hexapod_cpg.mapping import ACTION_SIZE
 from numpy.typing import NDArray
 
 from hexapod_agent.ddpg import Ddpg
+from hexapod_agent.layers import NORM_EPSILON
 
 Policy = Callable[[NDArray[np.float32]], NDArray[np.float32]]
 
@@ -32,6 +33,7 @@ def trained_policy(agent: Ddpg) -> Policy:
     as long, and rounds as the precision of the updates says.
     """
     arrays = {name: array[0].numpy() for name, array in agent.actor_parameters.arrays.items()}
+    normalize = agent.actor_config.layer_norm
     *hidden, output = [
         (weight, arrays[name.replace('weight', 'bias')])
         for name, weight in arrays.items()
@@ -41,7 +43,11 @@ def trained_policy(agent: Ddpg) -> Policy:
     def act(observation: NDArray[np.float32]) -> NDArray[np.float32]:
         features = observation
         for weight, bias in hidden:
-            features = np.maximum(weight @ features + bias, 0.0)
+            features = weight @ features + bias
+            if normalize:
+                features -= features.mean()
+                features /= np.sqrt(features @ features / features.size + NORM_EPSILON)
+            features = np.maximum(features, 0.0)
         action: NDArray[np.float32] = np.tanh(output[0] @ features + output[1])
         return action
 

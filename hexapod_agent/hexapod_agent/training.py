@@ -86,8 +86,15 @@ class Trainer:
         """The batches of a group of updates, all in all and one by one."""
         ddpg = self.config.ddpg
         sizes = (ddpg.batch_size, self.spec.size, ACTION_SIZE)
-        drawn = Batch.empty(ddpg.update_every, *sizes, torch.float32)
-        return drawn, [drawn.inner(number) for number in range(ddpg.update_every)]
+        drawn = Batch.empty(ddpg.group_size, *sizes, torch.float32)
+        return drawn, [drawn.inner(number) for number in range(ddpg.group_size)]
+
+    @property
+    def rate_share(self) -> float:
+        """Share of the learning rates at which this episode learns."""
+        training = self.config.training
+        progress = min(self.episode / max(training.episodes - 1, 1), 1.0)
+        return 1.0 - (1.0 - training.final_rate) * progress
 
     @property
     def average_return(self) -> float:
@@ -111,6 +118,7 @@ class Trainer:
         if episode != self.episode:
             raise ValueError(f'episode {episode} cannot begin, expected episode {self.episode}')
         self._record = EpisodeRecord(episode)
+        self.agent.set_rate_share(self.rate_share)
         self._noise.reset()
         self._action = None
 
@@ -149,7 +157,7 @@ class Trainer:
         """Gradient steps to take now: a group of them, where it is time and there is a batch."""
         config = self.config.ddpg
         is_time = (self._step + 1) % config.update_every == 0
-        return config.update_every if is_time and len(self._replay) >= config.batch_size else 0
+        return config.group_size if is_time and len(self._replay) >= config.batch_size else 0
 
     def sample(self, batch: Batch) -> None:
         """Draw the transitions of the next updates, as many as the batches are."""

@@ -22,9 +22,23 @@ def small_config() -> AgentConfig:
     return AgentConfig.from_mapping(changes, 'small_config')
 
 
+@pytest.fixture(scope='session')
+def switched_config(small_config) -> AgentConfig:
+    """Small, with every switch of the learner on."""
+    changes = {
+        'actor': {'layer_norm': True},
+        'critic': {'layer_norm': True, 'twin': True},
+        'ddpg': {'update_ratio': 0.5},
+        'training': {'episodes': 4, 'final_rate': 0.2},
+    }
+    return small_config.changed(changes, 'switched_config')
+
+
 @pytest.fixture
 def make_trainer(small_config):
-    def make(observations: str = 'BC', seed: int = 5) -> Trainer:
-        return Trainer(ObservationSpec(observations), small_config, seed)
+    def make(
+        observations: str = 'BC', seed: int = 5, config: AgentConfig = small_config
+    ) -> Trainer:
+        return Trainer(ObservationSpec(observations), config, seed)
 
     return make

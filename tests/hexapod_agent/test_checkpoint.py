@@ -38,10 +38,12 @@ def assert_same(first, second) -> None:
             assert value == right[path], path
 
 
-def test_resumed_run_equals_the_uninterrupted_one(make_trainer, tmp_path):
-    whole = make_trainer()
+@pytest.mark.parametrize('name', ['small_config', 'switched_config'])
+def test_resumed_run_equals_the_uninterrupted_one(make_trainer, tmp_path, request, name):
+    config = request.getfixturevalue(name)
+    whole = make_trainer(config=config)
     advance(whole, 4)
-    part = make_trainer()
+    part = make_trainer(config=config)
     advance(part, 2)
     checkpoint.save(tmp_path / 'a.pt', part, to_resume=True)
     resumed = checkpoint.load(tmp_path / 'a.pt')

@@ -9,6 +9,7 @@ from hexapod_agent.ddpg import Ddpg
 from hexapod_agent.hyperparameters import ActorConfig, CriticConfig
 from hexapod_agent.networks import Actor, Critic
 from hexapod_agent.parameters import ParameterStack
+from hexapod_agent.policies import trained_policy
 from hexapod_agent.replay import Batch
 
 SIZES = (5, 3)
@@ -22,17 +23,18 @@ def make(
     rate: float = 1e-2,
     value: float = 0.0,
     observations: int = SIZES[0],
+    twin: bool = False,
     **actor,
 ) -> Ddpg:
     values = {
         'hidden': (20, 10), 'learning_rate': rate, 'l2': 0.0, 'gradient_threshold': 1e9,
-        'preactivation_penalty': 0.0, 'normalize_loss': False,
+        'preactivation_penalty': 0.0, 'normalize_loss': False, 'layer_norm': False,
     }  # fmt: skip
     return Ddpg(
         observations,
         SIZES[1],
         ActorConfig(**values | actor),
-        CriticConfig((20, 10), 'add', value, rate, 0.0, 1e9),
+        CriticConfig((20, 10), 'add', value, rate, 0.0, 1e9, False, twin),
         batch,
         target_smoothing=0.1,
         generator=torch.Generator().manual_seed(seed),
@@ -83,28 +85,41 @@ def adam(arrays: dict[str, torch.Tensor], loss: torch.Tensor) -> None:
     optimizer.step()
 
 
-@pytest.mark.parametrize(('penalty', 'normalize'), [(0.0, False), (0.02, True)])
-def test_update_is_that_of_autograd(penalty, normalize):
-    agent = make(preactivation_penalty=penalty, normalize_loss=normalize)
+@pytest.mark.parametrize(
+    ('penalty', 'normalize', 'twin'), [(0.0, False, False), (0.02, True, False), (0.0, True, True)]
+)
+def test_update_is_that_of_autograd(penalty, normalize, twin):
+    agent = make(preactivation_penalty=penalty, normalize_loss=normalize, twin=twin)
     batch = fill(agent).inner(0)
     actor, critic = leaves(agent.actor_parameters), leaves(agent.critic_parameters)
     # The targets still have the initial weights; take them from the state.
-    state = {name: value.clone() for name, value in agent.state_dict().items() if 'target' in name}
-    targets = {}
-    for name, online in (('actor', agent.actor_parameters), ('critic', agent.critic_parameters)):
-        stack = online.like()
-        stack.flat.copy_(state[f'target_{name}'])
-        targets[name] = {key: array[0] for key, array in stack.arrays.items()}
+    state = {name: value.clone() for name, value in stacks_of(agent).items()}
+    critics = [name for name in ('critic', 'twin_critic') if name in state]
+    assert len(critics) == 1 + twin
+    parts = {'actor': agent.actor_parameters} | dict.fromkeys(critics, agent.critic_parameters)
+    targets = {
+        name: {key: array[0] for key, array in with_numbers(like, state[f'target_{name}']).items()}
+        for name, like in parts.items()
+    }
 
     statistics = agent.update(batch)
 
     next_action = forward(Actor, targets['actor'], batch.next_observation).tanh()
-    target = batch.reward + batch.bootstrap * forward(
-        Critic, targets['critic'], batch.next_observation, next_action
-    )
-    value = forward(Critic, critic, batch.observation, batch.action)
-    critic_loss = torch.nn.functional.mse_loss(value, target)
-    adam(critic, critic_loss)
+    values = [forward(Critic, targets[n], batch.next_observation, next_action) for n in critics]
+    target = batch.reward + batch.bootstrap * torch.stack(values).amin(dim=0)
+    losses = []
+    learned = {'critic': critic}
+    if twin:
+        assert not torch.equal(*values)
+        learned['twin_critic'] = {
+            key: array[0].clone().requires_grad_()
+            for key, array in with_numbers(agent.critic_parameters, state['twin_critic']).items()
+        }
+    for arrays in learned.values():
+        value = forward(Critic, arrays, batch.observation, batch.action)
+        losses.append(torch.nn.functional.mse_loss(value, target))
+        adam(arrays, losses[-1])
+    critic_loss = torch.stack(losses).mean()
     z = forward(Actor, actor, batch.observation)
     value = forward(
         Critic, {k: a.detach() for k, a in critic.items()}, batch.observation, z.tanh()
@@ -116,11 +131,14 @@ def test_update_is_that_of_autograd(penalty, normalize):
     assert statistics.critic_loss.item() == pytest.approx(critic_loss.item())
     assert statistics.actor_loss.item() == pytest.approx(actor_loss.item())
     assert statistics.mean_q.item() == pytest.approx(value.mean().item())
-    for online, expected in ((agent.actor_parameters, actor), (agent.critic_parameters, critic)):
-        for name, array in online.arrays.items():
+    now = stacks_of(agent)
+    for part, expected in (('actor', actor), *learned.items()):
+        for name, array in with_numbers(parts[part], now[part]).items():
             torch.testing.assert_close(array[0], expected[name].detach(), rtol=1e-9, atol=1e-12)
-    moved = state['target_critic'] + 0.1 * (agent.critic_parameters.flat - state['target_critic'])
-    torch.testing.assert_close(agent.state_dict()['target_critic'], moved)
+    for part in parts:
+        target = f'target_{part}'
+        moved = state[target] + 0.1 * (now[part] - state[target])
+        torch.testing.assert_close(now[target], moved)
 
 
 def test_agents_of_a_stack_do_not_touch_one_another():
@@ -179,8 +197,14 @@ def test_an_agent_put_in_a_wider_stack_learns_as_alone():
 
 def stacks_of(agent: Ddpg) -> dict[str, torch.Tensor]:
     """Networks and targets of a state."""
-    state = agent.state_dict()
-    return {name: state[name] for name in ('actor', 'critic', 'target_actor', 'target_critic')}
+    return {name: part for name, part in agent.state_dict().items() if 'optimizer' not in name}
+
+
+def with_numbers(like: ParameterStack, flat: torch.Tensor) -> dict[str, torch.Tensor]:
+    """Arrays of a state's flat tensor."""
+    stack = like.like()
+    stack.flat.copy_(flat)
+    return stack.arrays
 
 
 def test_preactivation_penalty_keeps_actions_off_the_bounds():
@@ -248,3 +272,12 @@ def test_denormal_numbers_survive_outside_an_update(fails, monkeypatch):
     else:
         agent.update(empty().inner(0))
     assert torch.tensor(1e-310, dtype=torch.float64) * 0.5 > 0
+
+
+def test_the_policy_in_numpy_is_the_actor(make_trainer, switched_config):
+    """With normalised layers; without them an exported policy is held against it, too."""
+    trainer = make_trainer(config=switched_config)
+    trainer.agent.actor_parameters.flat.mul_(8.0)
+    observation = torch.linspace(-1.0, 1.0, trainer.spec.size)
+    action = trained_policy(trainer.agent)(observation.numpy())
+    torch.testing.assert_close(trainer.agent.act(observation[None])[0], torch.from_numpy(action))

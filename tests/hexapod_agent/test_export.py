@@ -21,10 +21,20 @@ from hexapod_agent import checkpoint, export
 TOLERANCE = 1e-5
 
 
-@pytest.fixture(params=['', 'BC', LETTERS])
+@pytest.fixture(
+    params=[
+        ('', 'small_config'),
+        ('BC', 'small_config'),
+        (LETTERS, 'small_config'),
+        ('B', 'switched_config'),
+    ]
+)
 def trainer(make_trainer, request):
-    made = make_trainer(request.param)
+    letters, config = request.param
+    made = make_trainer(letters, config=request.getfixturevalue(config))
     made.agent.actor_parameters.flat.mul_(8.0)  # actions of every size, also saturated ones
+    if made.config.actor.layer_norm:  # which undoes the scale of all but the last layer
+        made.agent.actor_parameters.arrays['output.weight'].mul_(32.0)
     return made
 
 

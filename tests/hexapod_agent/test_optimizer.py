@@ -93,6 +93,21 @@ def test_agents_at_different_steps_move_as_they_do_alone():
     assert stack.state_dict()['steps'].tolist() == [7, 4]
 
 
+def test_each_agent_steps_by_its_share_of_the_learning_rate():
+    parameters = ParameterStack({'a.bias': (1,)}, agents=3, dtype=torch.float64)
+    optimizer = ClippedAdam(parameters, 0.1, l2=0.0, threshold=10.0)
+    for agent, share in enumerate((1.0, 0.5, 0.25)):
+        optimizer.set_share(agent, share)
+    optimizer.move_only([0, 2])
+    optimizer.gradients.flat.fill_(2.0)
+    optimizer.step()
+    # Adam's first step is the rate itself.
+    torch.testing.assert_close(
+        parameters.arrays['a.bias'][:, 0], torch.tensor([-0.1, 0.0, -0.025]).double(), rtol=1e-7,
+        atol=0.0,
+    )  # fmt: skip
+
+
 def test_state_moves_between_a_stack_and_a_single_agent():
     shapes = {'a.bias': (4,)}
     single = ClippedAdam(ParameterStack(shapes), 0.1, 0.0, 1.0)

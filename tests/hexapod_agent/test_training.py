@@ -51,10 +51,13 @@ def test_summary_adds_up(make_trainer):
     assert np.isfinite(trainer.summary.critic_loss)
 
 
-@pytest.mark.parametrize('update_every', [1, 4, 7])
-def test_updates_come_in_groups_and_as_often_as_steps(small_config, update_every):
-    ddpg = {'ddpg': {'batch_size': 1, 'buffer_size': 100, 'update_every': update_every}}
-    config = AgentConfig.from_mapping(small_config.to_mapping() | ddpg, 'a test')
+@pytest.mark.parametrize(
+    ('update_every', 'ratio', 'group'),
+    [(1, 1, 1), (4, 1.0, 4), (7, 1.0, 7), (4, 0.25, 1), (7, 3, 21), (10, 0.1, 1)],
+)
+def test_updates_come_in_groups_by_their_ratio(small_config, update_every, ratio, group):
+    ddpg = {'batch_size': 1, 'update_every': update_every, 'update_ratio': ratio}
+    config = small_config.changed({'ddpg': ddpg}, 'a test')
     trainer = Trainer(ObservationSpec('BC'), config, 1)
     play(trainer, [1.0])  # so that the first group of the next episode finds a batch
     trainer.begin_episode(1)
@@ -62,7 +65,32 @@ def test_updates_come_in_groups_and_as_often_as_steps(small_config, update_every
     for step in range(28):
         trainer.observe(observation(trainer), outcome(step))
         due.append(trainer.due)
-    assert due == [*[0] * (update_every - 1), update_every] * (28 // update_every)
+    assert due[: 28 // update_every * update_every] == [*[0] * (update_every - 1), group] * (
+        28 // update_every
+    )
+
+
+def test_learning_rates_fall_evenly_to_the_last_episode(small_config):
+    training = {'training': {'episodes': 5, 'final_rate': 0.2}}
+    trainer = Trainer(ObservationSpec(''), small_config.changed(training, 'a test'), 1)
+    shares = []
+    for trainer.episode in range(7):
+        shares.append(trainer.rate_share)
+    assert shares == pytest.approx([1.0, 0.8, 0.6, 0.4, 0.2, 0.2, 0.2])
+
+
+def test_a_falling_rate_moves_the_weights_less(small_config):
+    moved = []
+    for rate in (1.0, 0.0):
+        training = {'training': {'episodes': 2, 'final_rate': rate}}
+        trainer = Trainer(ObservationSpec(''), small_config.changed(training, 'a test'), 1)
+        env = HexapodLine('', trainer.config)
+        train_episode(env, trainer)
+        before = weights(trainer).clone()
+        train_episode(env, trainer)
+        moved.append((weights(trainer) - before).norm())
+    assert moved[0] > 0.0
+    assert moved[1] == 0.0
 
 
 def test_episodes_shorter_than_a_group_are_refused():

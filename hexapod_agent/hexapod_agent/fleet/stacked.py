@@ -37,7 +37,7 @@ class StackedLearners:
         self, config: AgentConfig, observation_size: int, places: int, crew: Crew, device: str
     ) -> None:
         ddpg, wide = config.ddpg, torch.float32
-        self.beat = ddpg.update_every
+        self.beat, self._updates = ddpg.update_every, ddpg.group_size
         narrow = torch.bfloat16 if config.training.precision == 'bfloat16' else None
         self._crew = crew
         self._device = torch.device(device)
@@ -47,10 +47,10 @@ class StackedLearners:
         )  # fmt: skip
         pinned = self._device.type != 'cpu'
         # A group of updates for the first place, then one for the second, and so on.
-        sizes = (places * self.beat, ddpg.batch_size, observation_size, ACTION_SIZE, wide)
+        sizes = (places * self._updates, ddpg.batch_size, observation_size, ACTION_SIZE, wide)
         self._drawn = Batch.empty(*sizes, pinned=pinned)
         self._sent = Batch.empty(*sizes, self._device)
-        self._batches = [self._batch_of(update, places) for update in range(self.beat)]
+        self._batches = [self._batch_of(update, places) for update in range(self._updates)]
         self._observations = torch.zeros(places, observation_size, pin_memory=pinned)
         self._learning: tuple[int, ...] = ()
         self._pending: tuple[list[Seat], list[UpdateStatistics]] | None = None
@@ -58,20 +58,22 @@ class StackedLearners:
     def _batch_of(self, update: int, places: int) -> Batch:
         """View of what all places learn from in one update of a group, as the stack takes it."""
         place = 0 if places == 1 else slice(None)
-        groups = (tensor.unflatten(0, (places, self.beat)) for tensor in vars(self._sent).values())
+        groups = (
+            tensor.unflatten(0, (places, self._updates)) for tensor in vars(self._sent).values()
+        )
         return Batch(*(group[place, update] for group in groups))
 
     def _drawn_for(self, seat: Seat) -> Batch:
         """View of what one place learns from in a group of updates."""
-        first = seat.place * self.beat
-        return self._drawn.part(slice(first, first + self.beat), seat.trainer.spec.size)
+        first = seat.place * self._updates
+        return self._drawn.part(slice(first, first + self._updates), seat.trainer.spec.size)
 
     def seat(self, seat: Seat) -> None:
         """Copy a trainer's networks into its place of the stack."""
         self._stack.put(seat.place, seat.trainer.agent)
         self._observations[seat.place].zero_()
         for drawn in vars(self._drawn).values():
-            drawn.unflatten(0, (-1, self.beat))[seat.place].zero_()
+            drawn.unflatten(0, (-1, self._updates))[seat.place].zero_()
 
     def settle(self, seat: Seat) -> None:
         """Copy the networks back."""
@@ -98,6 +100,8 @@ class StackedLearners:
         if places != self._learning:
             self._learning = places
             self._stack.learn_only(places)
+        for seat in due:
+            self._stack.set_rate_share(seat.trainer.rate_share, seat.place)
         self._crew.run(partial(self._draw, seat) for seat in due)
         for here, there in zip(vars(self._drawn).values(), vars(self._sent).values(), strict=True):
             there.copy_(here, non_blocking=True)

@@ -54,11 +54,15 @@ def test_runs_equal_those_trained_alone_to_the_last_bit(
         assert_same_state(run, alone)
 
 
-def test_a_stack_learns_what_its_runs_learn_alone(small_config, new_run, train_alone, train_fleet):
-    stacked = [new_run(small_config, letters, seed) for letters, seed in RUNS]
+@pytest.mark.parametrize('name', ['small_config', 'switched_config'])
+def test_a_stack_learns_what_its_runs_learn_alone(
+    name, request, new_run, train_alone, train_fleet
+):
+    config = request.getfixturevalue(name)
+    stacked = [new_run(config, letters, seed) for letters, seed in RUNS]
     train_fleet(stacked, places=2, stacked=True)
     for run, (letters, seed) in zip(stacked, RUNS, strict=True):
-        alone = train_alone(new_run(small_config, letters, seed))
+        alone = train_alone(new_run(config, letters, seed))
         # Sums are rounded otherwise, and small differences grow from step to step.
         for ours, theirs in zip(run.summaries, alone.summaries, strict=True):
             assert ours.episode_return == pytest.approx(theirs.episode_return, rel=1e-3)
