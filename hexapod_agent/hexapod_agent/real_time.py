@@ -127,7 +127,9 @@ class RealTimePlay:
         values |= self._ticker.meter.values() if self._ticker is not None else {}
         values |= self._samples.values()
         if self.state is State.DRIVING:
-            return DiagnosticStatus.OK, 'driving', values
+            contest = self._samples.contest()
+            level = DiagnosticStatus.WARN if contest else DiagnosticStatus.OK
+            return level, contest or 'driving', values
         level = DiagnosticStatus.WARN if self.state is State.WAITING else DiagnosticStatus.ERROR
         return level, self._reason, values
 

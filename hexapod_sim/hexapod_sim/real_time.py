@@ -87,9 +87,11 @@ class RealTime:
             **self._ticker.meter.values(),
             **self._samples.values(),
         }
+        warning = self._samples.contest()
         if self._skipped:
-            text = f'{self._skipped} periods skipped: the sim does not keep up'
-            return DiagnosticStatus.WARN, text, values
+            warning = f'{self._skipped} periods skipped: the sim does not keep up'
+        if warning:
+            return DiagnosticStatus.WARN, warning, values
         return DiagnosticStatus.OK, self._samples.fault() or 'in real time', values
 
     def _on_tick(self, tick: Tick) -> None:
@@ -104,7 +106,7 @@ class RealTime:
         for index in range(max(periods - _CATCH_UP_PERIODS, 0), periods):
             outcome = self._plant.advance()
             if self._factor == 1.0:
-                due_ns = tick.stamp_ns + index * CONTROL_PERIOD_NS
+                due_ns = tick.stamp_ns - (tick.missed - index) * CONTROL_PERIOD_NS
                 self._now_ns = max(self._now_ns + 1, due_ns)
             else:
                 self._now_ns += CONTROL_PERIOD_NS

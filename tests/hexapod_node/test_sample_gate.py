@@ -91,3 +91,44 @@ def test_a_value_is_never_too_old_and_every_sample_is_accounted_for(
             assert -FUTURE_NS <= gate.age_ns(now) <= AGE
     assert gate.counts.received == len(samples)
     assert gate.counts.accepted == accepted
+
+
+def test_a_further_publisher_is_counted_and_not_heard_while_the_first_one_speaks(
+    gate: SampleGate[str],
+) -> None:
+    assert gate.offer('a', NOW, NOW, sequence=70)
+    assert gate.contest(NOW) == ''
+    assert not gate.offer('b', NOW + 1, NOW + 1, sequence=3)
+    assert gate.offer('a', NOW + 2, NOW + 2, sequence=73)  # two were lost on their way
+    assert not gate.offer('b', NOW + 3, NOW + 3, sequence=4)
+    assert gate.value(NOW + 3) == 'A'
+    assert gate.counts.other_publisher == gate.counts.faults == 2
+    assert 'joints: has more than one publisher' in gate.contest(NOW + 3)
+    assert gate.contest(NOW + 3_000_000_000) == ''
+
+
+def test_a_publisher_that_fell_silent_is_followed_by_the_next_one_with_a_good_sample(
+    gate: SampleGate[str],
+) -> None:
+    gate.offer('a', NOW, NOW, sequence=70)
+    later = NOW + AGE + 1
+    assert not gate.offer('odd', later, later, sequence=5)
+    assert gate.offer('c', later, later, sequence=2)
+    assert not gate.offer('odd', later + 1, later + 1, sequence=6 + 1000)
+    assert gate.value(later + 1) == 'C'
+
+
+def test_a_bad_sample_of_the_first_publisher_is_still_the_first_ones(
+    gate: SampleGate[str],
+) -> None:
+    gate.offer('a', NOW, NOW, sequence=70)
+    for lost in range(200):
+        assert not gate.offer('odd', NOW + 1 + lost, NOW + 1, sequence=71 + lost)
+    assert gate.offer('a', NOW + 500, NOW + 500, sequence=271)
+    assert gate.counts.other_publisher == 0
+
+
+def test_where_the_middleware_numbers_nothing_everything_is_heard(gate: SampleGate[str]) -> None:
+    assert gate.offer('a', NOW, NOW)
+    assert gate.offer('b', NOW + 1, NOW + 1)
+    assert gate.counts.other_publisher == 0

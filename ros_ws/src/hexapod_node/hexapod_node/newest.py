@@ -12,6 +12,7 @@ from typing import Any
 
 from rclpy.node import Node
 
+from hexapod_node.message_info import NumberedCallback
 from hexapod_node.qos import DRIVER
 from hexapod_node.sample_gate import SampleGate
 from hexapod_node.stamps import to_nanoseconds
@@ -52,7 +53,10 @@ class NewestSamples:
         self._oldest_ns = dict.fromkeys(inputs, 0)
         self._subscriptions = [
             node.create_subscription(
-                wanted.message_type, topic, partial(self._on_message, topic), DRIVER
+                wanted.message_type,
+                topic,
+                NumberedCallback(partial(self._on_message, topic)),
+                DRIVER,
             )
             for topic, wanted in inputs.items()
         ]
@@ -76,6 +80,11 @@ class NewestSamples:
         now_ns = self._now_ns()
         return next((text for gate in self.gates.values() if (text := gate.fault(now_ns))), '')
 
+    def contest(self) -> str:
+        """Say which topic was heard from more than one publisher of late; '' if none was."""
+        now_ns = self._now_ns()
+        return next((text for gate in self.gates.values() if (text := gate.contest(now_ns))), '')
+
     @property
     def dropped(self) -> int:
         """Samples of any topic that were dropped."""
@@ -95,9 +104,10 @@ class NewestSamples:
             self._oldest_ns[topic] = 0
         return shown
 
-    def _on_message(self, topic: str, message: Any) -> None:
+    def _on_message(self, topic: str, message: Any, sequence: int | None) -> None:
         gate = self.gates[topic]
-        if not gate.offer(message, to_nanoseconds(message.header.stamp), self._now_ns()):
+        stamp_ns = to_nanoseconds(message.header.stamp)
+        if not gate.offer(message, stamp_ns, self._now_ns(), sequence):
             self._node.get_logger().warning(
                 f'sample dropped: {gate.reason}', throttle_duration_sec=_THROTTLE_S
             )

@@ -26,9 +26,9 @@ class Tick:
     """One call of a ticker.
 
     Attributes:
-        stamp_ns: When the tick was due, on the node's clock.
-        late_ns: How long ago that was.
-        missed: Ticks that were due after it and are left out.
+        stamp_ns: When the tick was due, on the node's clock; never a period ago.
+        late_ns: How long ago the first tick was due that was not served yet.
+        missed: Ticks that were due before this one and are left out.
     """
 
     stamp_ns: int
@@ -105,7 +105,8 @@ class Ticker:
         if due is None:
             return
         self.meter.add(due.late_ns, due.missed)
-        stamp_ns = self._node.get_clock().now().nanoseconds - due.late_ns
+        overdue_ns = due.late_ns - due.missed * self._schedule.period_ns
+        stamp_ns = self._node.get_clock().now().nanoseconds - overdue_ns
         try:
             self._callback(Tick(stamp_ns, due.late_ns, due.missed))
         except rclpy_implementation.RCLError:
