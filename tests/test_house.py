@@ -22,7 +22,7 @@ FILES = [file for name in MAY_IMPORT for file in sorted((ROOT / name / name).rgl
 # the recorder hears.
 TOUCHES_ROS = {
     'messages.py', 'peers.py', 'graph_run.py', 'control_loop.py', 'publishers.py', 'real_time.py',
-    'sampled_topics.py',
+    'sampled_topics.py', 'lock_step.py', 'measured_start.py',
 }  # fmt: skip
 MESSAGE_PACKAGES = {
     'diagnostic_msgs', 'geometry_msgs', 'hexapod_interfaces', 'hexapod_node', 'nav_msgs',

@@ -61,6 +61,11 @@ class Locomotion:
         self.guard.reset()
         self.motion = Motion.STANDING
 
+    def hold(self, config: HopfConfig) -> None:
+        """Begin where the last target left the robot, with the way to the standing pose."""
+        self.restart(config)
+        self.motion = Motion.STANDING if self._stands else Motion.STOPPING
+
     def wait(self, config: HopfConfig) -> None:
         """Begin without knowing where the joints are: `rise` is to tell."""
         self.restart(config)
@@ -101,12 +106,17 @@ class Locomotion:
             RuntimeError: Nobody has told where the joints are.
         """
         if self.motion is Motion.WAITING:
-            raise RuntimeError('locomotion: expected rise() or stand() before the first motion')
+            raise RuntimeError(
+                'locomotion: expected rise(), hold() or stand() before the first motion'
+            )
         on_the_way = Motion.RISING if self.motion is Motion.RISING else Motion.STOPPING
         targets = self.guard.approach(robot.NEUTRAL_POSE, self._stop_rate)
-        stands = np.array_equal(self.guard.position, robot.NEUTRAL_POSE)
-        self.motion = Motion.STANDING if stands else on_the_way
+        self.motion = Motion.STANDING if self._stands else on_the_way
         return targets
+
+    @property
+    def _stands(self) -> bool:
+        return np.array_equal(self.guard.position, robot.NEUTRAL_POSE)
 
     def _advance(self, command: Command) -> NDArray[np.float64]:
         # What overflows is not finite in the end, and refused.

@@ -8,9 +8,9 @@ from __future__ import annotations
 from array import array
 
 import numpy as np
-from hexapod_interfaces.msg import CpgCommand
+from hexapod_interfaces.msg import CpgCommand, CpgState
 from hexapod_node.invalid_message import InvalidMessageError
-from hexapod_node.stamps import duration_message
+from hexapod_node.stamps import duration_message, time_message
 from hexapod_sim.joint_names import by_joint
 from hexapod_sim.robot import (
     CONTROL_PERIOD_NS,
@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
+from hexapod_cpg.cpg import Cpg
 from hexapod_cpg.mapping import COMMAND_FIELDS, Command
 
 _SUBSTEP_NS = CONTROL_PERIOD_NS // SUBSTEPS
@@ -79,16 +80,27 @@ def pose_from_message(message: JointState) -> NDArray[np.float64]:
     return pose
 
 
-def new_trajectory() -> JointTrajectory:
-    """Return a trajectory message with its names and times, for `targets_to_message` to fill."""
-    points = [
-        JointTrajectoryPoint(time_from_start=duration_message(_SUBSTEP_NS * (substep + 1)))
-        for substep in range(SUBSTEPS)
-    ]
-    return JointTrajectory(joint_names=list(JOINTS), points=points)
+class OutputMessages:
+    """What the pattern generator publishes, written into messages that are made once."""
 
+    def __init__(self) -> None:
+        points = [
+            JointTrajectoryPoint(time_from_start=duration_message(_SUBSTEP_NS * (substep + 1)))
+            for substep in range(SUBSTEPS)
+        ]
+        self._trajectory = JointTrajectory(joint_names=list(JOINTS), points=points)
+        self._state = CpgState()
 
-def targets_to_message(targets: NDArray[np.float64], message: JointTrajectory) -> None:
-    """Write joint targets (SUBSTEPS, 18), rad, into a trajectory message."""
-    for point, target in zip(message.points, targets, strict=True):
-        point.positions = array('d', target.tobytes())
+    def trajectory(self, targets: NDArray[np.float64], stamp_ns: int) -> JointTrajectory:
+        """Return joint targets (SUBSTEPS, 18), rad, of the control period from a stamp on."""
+        for point, target in zip(self._trajectory.points, targets, strict=True):
+            point.positions = array('d', target.tobytes())
+        self._trajectory.header.stamp = time_message(stamp_ns)
+        return self._trajectory
+
+    def state(self, cpg: Cpg, stamp_ns: int) -> CpgState:
+        """Return the oscillators' state at a stamp."""
+        self._state.header.stamp = time_message(stamp_ns)
+        self._state.x = cpg.x
+        self._state.y = cpg.y
+        return self._state

@@ -88,8 +88,8 @@ def test_a_command_that_is_not_due_is_counted_and_not_played(rig: Rig) -> None:
     rig.command(START + PERIOD)
     rig.command(START)
     rig.command(START)
-    rig.graph.until(lambda: rig.cpg._due.counts.duplicate == 1 and len(rig.states) == 2)
-    assert rig.cpg._due.counts.out_of_order == 1
+    rig.graph.until(lambda: rig.cpg._mode._due.counts.duplicate == 1 and len(rig.states) == 2)
+    assert rig.cpg._mode._due.counts.out_of_order == 1
     assert len(rig.trajectories) == 1
 
 

@@ -66,7 +66,7 @@ class Rig:
         self._commander = node.create_publisher(CpgCommand, 'cpg/command', 1)
         node.create_timer(0.02, self._publish)
         self.cpg = graph.add(CpgNode())
-        graph.until(lambda: self.cpg._trajectory_publisher.get_subscription_count() == 1)
+        graph.until(lambda: self.cpg._mode._trajectory.get_subscription_count() == 1)
         graph.until(lambda: self._commander.get_subscription_count() == 1)
 
     def _publish(self) -> None:

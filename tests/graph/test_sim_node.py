@@ -10,7 +10,7 @@ import math
 import numpy as np
 import pytest
 from geometry_msgs.msg import TwistStamped, WrenchStamped
-from hexapod_cpg.messages import new_trajectory, targets_to_message
+from hexapod_cpg.messages import OutputMessages
 from hexapod_interfaces.msg import FootContacts, LineOffset, StepOutcome
 from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.stamps import time_message, to_nanoseconds
@@ -59,10 +59,7 @@ class Rig:
         self.graph.until(lambda: all(len(had) >= count for had in self.heard.values()))
 
     def play(self, stamp_ns: int, targets: np.ndarray = STANDING) -> None:
-        message = new_trajectory()
-        targets_to_message(targets, message)
-        message.header.stamp = time_message(stamp_ns)
-        self.publisher.publish(message)
+        self.publisher.publish(OutputMessages().trajectory(targets, stamp_ns))
 
 
 @pytest.fixture
@@ -163,10 +160,8 @@ def test_a_wrong_trajectory_is_refused_by_name(rig: Rig, spoil, complaint: str) 
     errors = []
     rig.sim.get_logger().error = errors.append
     start = to_nanoseconds(rig.reset().start)
-    message = new_trajectory()
-    targets_to_message(STANDING, message)
+    message = OutputMessages().trajectory(STANDING, start)
     spoil(message)
-    message.header.stamp = time_message(start)
     rig.publisher.publish(message)
     rig.graph.until(lambda: bool(errors))
     assert complaint in errors[0]

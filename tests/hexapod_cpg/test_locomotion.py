@@ -113,6 +113,6 @@ def test_a_joint_measured_beyond_its_limit_begins_at_the_limit(legs) -> None:
 def test_nothing_moves_before_somebody_tells_where_the_joints_are(legs) -> None:
     legs.wait(HopfConfig())
     for move in (legs.stop, lambda: legs.walk(COMMAND)):
-        with pytest.raises(RuntimeError, match='before the first motion'):
+        with pytest.raises(RuntimeError, match='expected rise'):
             move()
     assert legs.motion is Motion.WAITING
