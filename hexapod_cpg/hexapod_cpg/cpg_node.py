@@ -109,7 +109,7 @@ class CpgNode(LifecycleNode):
         return super().on_shutdown(state)
 
     def _refuse_what_does_not_fit(self) -> None:
-        """Answer a transition that the present state does not have: rclpy raises, amid a stride."""
+        """Answer a transition that does not fit the state: rclpy raises, amid a stride."""
         (service,) = (s for s in self.services if s.srv_type is ChangeState)
         change: Callable[..., ChangeState.Response] = service.callback
 
