@@ -1,18 +1,19 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Node `player`: plays a bag, ours or rosbag2's, byte for byte, with its clock."""
+"""Node `player`: plays a bag with MCAP storage, byte for byte, with its clock."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from hexapod_node.diagnostics import Diagnostics, Health
 from hexapod_node.parameters import Parameter, declare
-from hexapod_node.raw_topics import message_class
+from hexapod_node.raw_topics import message_class, replay_qos
 from hexapod_node.spin import run
 from hexapod_node.stamps import time_message
 from rclpy.clock import Clock as RclpyClock
@@ -20,13 +21,13 @@ from rclpy.clock import ClockType
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.parameter import Parameter as RclpyParameter
-from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Trigger
 
-from hexapod_doe.bags.bag_file import BagFile, RawMessage
+from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.bags.playback import Frame, Playback
-from hexapod_doe.bags.rosbag2 import OfferedQos
+from hexapod_doe.bags.selection import Selection, select
+from hexapod_doe.bags.spans import duration_text
 from hexapod_doe.errors import BagError
 
 CLOCK_TOPIC = '/clock'
@@ -34,14 +35,18 @@ CLOCK_TYPE = 'rosgraph_msgs/msg/Clock'
 # Longest that the end of playback waits until its readers have everything.
 _DRAIN = Duration(seconds=5)
 _IDLE_NS = 3_600_000_000_000
+# A pause that is worth a word, so that nobody takes it for the end.
+_LONG_S = 10.0
 
 PARAMETERS = (
-    Parameter('bag', '', 'Directory of the bag.'),
+    Parameter('bag', '', 'Directory of the bag, or one .mcap file.'),
     Parameter(
         'rate', 1.0, 'Recorded seconds per second; 0 for as fast as possible.', range=(0.0, 1e6)
     ),
     Parameter('loop', False, 'Begin again at the end; /clock then jumps back.'),
-    Parameter('start', 0.0, 'Where to begin, from the first message.', unit='s', range=(0.0, 1e9)),
+    Parameter(
+        'start', 0.0, 'Where to begin, from the first message.', unit='s', range=(0.0, 1e10)
+    ),
     Parameter('paused', False, 'Hold before the first message.'),
     Parameter(
         'topics', '', 'Names to play, or their ends, separated by spaces; none for all of them.'
@@ -52,7 +57,9 @@ PARAMETERS = (
 class PlayerNode(Node):
     """Publishes a bag's messages when they are due, and `/clock` after those of each instant.
 
-    A `/clock` in the bag is left out: there is one clock, the player's.
+    A `/clock` in the bag is left out: there is one clock, the player's. So is, with a warning, a
+    topic of a type that is not installed, or that was recorded by another definition than the
+    installed one: its subscribers would read wrong numbers.
     """
 
     def __init__(self, parameter_overrides: Sequence[RclpyParameter] = ()) -> None:
@@ -68,23 +75,26 @@ class PlayerNode(Node):
         declare(self, PARAMETERS)
         self.exit_status: int | None = None
         self._bag = BagFile(str(self._value('bag')))
-        self._topics = self._selected()
+        self._selection = self._selected()
+        for line in self._selection.warnings():
+            self.get_logger().warning(line)
         self._clock_publisher = self.create_publisher(Clock, CLOCK_TOPIC, 10)
         self._bag_publishers = {
             name: self.create_publisher(
-                message_class(self._bag.types[name]), name, _qos(self._bag.qos[name])
+                message_class(self._bag.types[name]), name, replay_qos(self._bag.qos[name])
             )
-            for name in self._topics
+            for name in self._selection.topics
         }
         self._playback = Playback(
-            self._messages,
+            partial(self._selection.messages, self._start_ns()),
             rate=float(self._value('rate')),
             loop=bool(self._value('loop')),
             paused=bool(self._value('paused')),
         )
         if self._playback.finished:
-            raise BagError(f'bag {self._bag.path}: empty, expected a message to play')
+            raise BagError(self._nothing())
         self._played = 0
+        self._told_ns: int | None = None
         self._now_ns = self._bag.start_ns
         self.create_service(Trigger, '~/pause', self._on_pause)
         self.create_service(Trigger, '~/resume', self._on_resume)
@@ -96,16 +106,30 @@ class PlayerNode(Node):
     def _value(self, name: str) -> Any:
         return self.get_parameter(name).value
 
-    def _selected(self) -> list[str]:
-        """Return the topics to play."""
+    def _selected(self) -> Selection:
+        """Return the topics to play.
+
+        Raises:
+            BagError: one of those asked for is not there, or none can be played.
+        """
         names = str(self._value('topics')).split() or list(self._bag.types)
         chosen = [self._bag.topic(name) for name in names]
-        return [name for name in chosen if self._bag.types[name] != CLOCK_TYPE]
+        wanted = [name for name in chosen if self._bag.types[name] != CLOCK_TYPE]
+        return select(self._bag, wanted, message_class)
 
-    def _messages(self) -> Iterator[RawMessage]:
+    def _start_ns(self) -> int | None:
+        """Return the recorded time to begin at; None for the first message, whatever its time."""
         after_ns = round(float(self._value('start')) * 1e9)
-        return self._bag.messages(
-            self._topics, self._bag.start_ns + after_ns if after_ns else None
+        return self._bag.start_ns + after_ns if after_ns else None
+
+    def _nothing(self) -> str:
+        """Return why there is no message to play."""
+        name = f'bag {self._bag.path}'
+        if self._start_ns() is None or not self._bag.about.message_count:
+            return f'{name}: empty, expected a message to play'
+        lasts = self._bag.about.duration_ns * 1e-9
+        return (
+            f'{name}: no message from start:={self._value("start")} s on, it lasts {lasts:.3f} s'
         )
 
     def _on_due(self) -> None:
@@ -120,8 +144,23 @@ class PlayerNode(Node):
                 self.exit_status = 1
                 return
             wait_ns = self._playback.wait_ns(time.monotonic_ns())
+        self._tell_pause(wait_ns)
         self._timer.timer_period_ns = _IDLE_NS if wait_ns is None else max(1, wait_ns)
         self._timer.reset()
+
+    def _tell_pause(self, wait_ns: int | None) -> None:
+        """Say that nothing is due for long, or that recorded times jump, and where they go on."""
+        next_ns, jump = self._playback.next_ns, self._playback.jump
+        if next_ns is None or next_ns == self._told_ns:
+            return
+        after = f'start:={(next_ns - self._bag.start_ns) * 1e-9:.3f} begins after it'
+        if jump:
+            self.get_logger().warning(f'{jump}: passed over; {after}')
+        elif wait_ns is not None and wait_ns * 1e-9 > _LONG_S:
+            self.get_logger().warning(f'nothing is due for {duration_text(wait_ns)}; {after}')
+        else:
+            return
+        self._told_ns = next_ns
 
     def _publish(self, frame: Frame) -> None:
         for message in frame.messages:
@@ -132,6 +171,8 @@ class PlayerNode(Node):
         if self._playback.finished:
             for publisher in self._bag_publishers.values():
                 publisher.wait_for_all_acked(_DRAIN)
+            for topic, count in self._selection.skipped.items():
+                self.get_logger().warning(f'{topic}: {count} messages are no CDR, and not played')
             self.get_logger().info(f'played {self._played} messages of {self._bag.path}')
             self.exit_status = 0
 
@@ -141,7 +182,13 @@ class PlayerNode(Node):
             'messages': self._played,
             'seconds': f'{(self._now_ns - self._bag.start_ns) * 1e-9:.3f}',
         }
-        return DiagnosticStatus.OK, 'paused' if self._playback.paused else 'playing', values
+        state = 'paused' if self._playback.paused else 'playing'
+        refused, skipped = self._selection.refused, self._selection.skipped
+        if not refused and not skipped:
+            return DiagnosticStatus.OK, state, values
+        values |= {f'not played: {topic}': reason for topic, reason in refused.items()}
+        values |= {f'not CDR: {topic}': count for topic, count in skipped.items()}
+        return DiagnosticStatus.WARN, f'{state} a part of the bag', values
 
     def _on_pause(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Hold before the next instant."""
@@ -167,17 +214,6 @@ class PlayerNode(Node):
         response.success = True
         response.message = f'{frame.time_ns * 1e-9:.9f} s, {len(frame.messages)} messages'
         return response
-
-
-def _qos(offered: Sequence[OfferedQos]) -> QoSProfile:
-    """Offer what every recorded publisher offered, and keep all of it until it is read."""
-    reliable = all(profile.reliability == 'reliable' for profile in offered)
-    latched = bool(offered) and all(p.durability == 'transient_local' for p in offered)
-    return QoSProfile(
-        reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
-        history=HistoryPolicy.KEEP_ALL,
-    )
 
 
 def main() -> None:

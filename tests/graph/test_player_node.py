@@ -30,6 +30,7 @@ from std_srvs.srv import Trigger
 pytestmark = pytest.mark.graph
 
 PERIOD_NS = 25_000_000
+CASES = Path(__file__).resolve().parents[1] / 'data' / 'cases'
 SAMPLE = Path(__file__).resolve().parents[2] / 'bags' / 'sample'
 TYPES = {'/w0/joint_states': 'sensor_msgs/msg/JointState', '/w0/clock': 'rosgraph_msgs/msg/Clock'}
 
@@ -220,8 +221,12 @@ def test_publishers_offer_what_was_recorded(graph, tmp_path, offered):
 
 
 def test_nothing_to_play_is_refused(graph, bag):
-    with pytest.raises(BagError, match='empty, expected a message to play'):
+    with pytest.raises(BagError, match=r'no message from start:=2\.0 s on, it lasts 0\.975 s'):
         add_player(graph, bag, start=2.0)
+    with BagWriter(bag.with_name('none'), {}) as writer:
+        writer.add_topic(Topic('/joints', 'sensor_msgs/msg/JointState'))
+    with pytest.raises(BagError, match='empty, expected a message to play'):
+        add_player(graph, bag.with_name('none'))
 
 
 def test_damage_further_on_ends_the_playback_with_one_line(graph, tmp_path, capfd):
@@ -242,6 +247,44 @@ def test_damage_further_on_ends_the_playback_with_one_line(graph, tmp_path, capf
     assert f'[player]: bag {tmp_path / "b"}: ' in line
     assert 'damaged' in line
     assert line.endswith(f'; {player._played} messages were played')
+
+
+def test_what_nobody_could_read_is_warned_of_and_left_out(graph, capfd):
+    """A Range of Humble has no variance: by today's definition its bytes end too soon."""
+    player = add_player(graph, CASES / 'b13_humble_range', rate=0, paused=False)
+    assert player.count_publishers('/hexapod/body/height') == 0
+    reports: list[DiagnosticArray] = []
+    graph.nodes[0].create_subscription(DiagnosticArray, '/diagnostics', reports.append, 10)
+    graph.until(lambda: player.exit_status == 0 and reports)
+    assert player._played == 280
+    (warning,) = [line for line in capfd.readouterr().err.splitlines() if 'WARN' in line]
+    assert '/hexapod/body/height is not played: sensor_msgs/Range has' in warning
+    (status,) = reports[-1].status
+    assert (status.level, status.message) == (b'\1', 'playing a part of the bag')
+    assert 'not played: /hexapod/body/height' in {entry.key for entry in status.values}
+
+
+def test_a_jump_of_55_years_is_told_and_can_be_started_after(graph, capfd):
+    player = add_player(graph, CASES / 'b07_time_zero', rate=100.0, paused=False)
+    graph.until(lambda: player.exit_status == 0)
+    assert player._played == 320
+    (warning,) = [line for line in capfd.readouterr().err.splitlines() if 'WARN' in line]
+    assert 'nothing was recorded for 55.8 years: passed over; start:=1760000000.050' in warning
+    late = add_player(graph, CASES / 'b07_time_zero', start=1760000000.0)
+    assert late._playback.next_ns == 1_760_000_000_050_000_000
+    with pytest.raises(BagError, match=r'no message from start:=2000000000\.0 s on, it lasts'):
+        add_player(graph, CASES / 'b07_time_zero', start=2e9)
+
+
+def test_a_long_pause_is_told(graph, tmp_path, capfd):
+    with BagWriter(tmp_path / 'b', {}) as writer:
+        writer.add_topic(Topic('/joints', 'sensor_msgs/msg/JointState'))
+        for stamp in (0, 10_800_000_000_000):
+            writer.write('/joints', joints(stamp), stamp)
+    player = add_player(graph, tmp_path / 'b', paused=False)
+    graph.until(lambda: player._played == 1)
+    graph.until(lambda: player._told_ns is not None)
+    assert 'nothing is due for 3.0 hours; start:=10800.000' in capfd.readouterr().err
 
 
 @pytest.mark.system

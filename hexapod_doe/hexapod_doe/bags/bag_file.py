@@ -1,29 +1,39 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Opens a rosbag2 directory with MCAP storage, checks that it is whole, and reads its messages."""
+"""Opens a bag with MCAP storage, checks that it is whole, and reads its messages."""
 
 from __future__ import annotations
 
-import os
 import struct
+from collections import Counter
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
+from functools import cached_property
 from pathlib import Path
-from typing import Any, BinaryIO, NamedTuple
+from typing import IO, Any, NamedTuple
 
-import yaml
-from mcap.exceptions import McapError
+from mcap.exceptions import McapError, UnsupportedCompressionError
 from mcap.reader import McapReader, SeekingReader
-from mcap.writer import MCAP0_MAGIC
-from mcap_ros2.decoder import DecoderFactory
 from zstandard import ZstdError
 
-from hexapod_doe.bags.rosbag2 import METADATA_FILE, ROOT_KEY, offered_qos, partial_path
+from hexapod_doe.bags.cdr import decompressed
+from hexapod_doe.bags.decoding import Decoders, short
+from hexapod_doe.bags.location import CONVERT, located
+from hexapod_doe.bags.mcap_file import (
+    PACKED_SUFFIX,
+    Contents,
+    RecordedTopic,
+    check_ends,
+    gone_through,
+    summed_up,
+    unpacked,
+)
+from hexapod_doe.bags.metadata import BagMetadata, bare_metadata, read_metadata
+from hexapod_doe.bags.rosbag2 import METADATA_FILE, OfferedQos
 from hexapod_doe.bags.run_bag import RUN_RECORD
 from hexapod_doe.errors import BagError
 
-_YAML_LOADER = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
 DAMAGE = (
     McapError, ZstdError, struct.error, ValueError, OSError,
     LookupError, OverflowError, MemoryError,
@@ -44,8 +54,9 @@ class BagFile:
     """A closed bag, its sums checked against its metadata.yaml.
 
     Attributes:
-        path: the directory.
-        types: message type by topic.
+        path: the directory, or the one MCAP file.
+        about: what it says of itself.
+        types: message type by topic; the first one, where a topic has several.
         counts: number of messages by topic.
         qos: what the publishers of each topic offered.
         start_ns: time of the first message.
@@ -55,26 +66,33 @@ class BagFile:
     def __init__(self, path: str | Path) -> None:
         """Read metadata.yaml and the summary of each MCAP file.
 
+        Args:
+            path: a rosbag2 directory, or one MCAP file, which is then read by itself; `~` is the
+                home directory.
+
         Raises:
-            BagError: missing, unfinished, cut, or not a rosbag2 directory with MCAP storage.
+            BagError: missing, unfinished, cut, or not a bag with MCAP storage.
         """
-        self.path = Path(path)
-        information = self._information()
-        try:
-            listed = {
-                entry['topic_metadata']['name']: entry
-                for entry in information['topics_with_message_count']
-            }
-            self.types = {name: e['topic_metadata']['type'] for name, e in listed.items()}
-            self.qos = {
-                name: offered_qos(e['topic_metadata'].get('offered_qos_profiles', ()))
-                for name, e in listed.items()
-            }
-            self.counts = {name: int(e['message_count']) for name, e in listed.items()}
-            self.start_ns = int(information['starting_time']['nanoseconds_since_epoch'])
-            self.files = [self.path / name for name in information['relative_file_paths']]
-        except (KeyError, TypeError, AttributeError) as error:
-            raise self._foreign(f'{METADATA_FILE} lacks {error}') from error
+        self.path = located(path)
+        self._unpacked: dict[Path, IO[bytes]] = {}
+        if self.path.is_dir():
+            self.about = read_metadata(self.path)
+            self._check_storage()
+            self.files = [self.path / name for name in self.about.files]
+            self._sums = [self._sum_up(file) for file in self.files]
+        else:
+            self.files = [self.path]
+            contents = self._sum_up(self.path) or self._go_through(self.path)
+            self._sums = [contents]
+            self.about = bare_metadata(self.path, contents)
+        self.types: dict[str, str] = {}
+        self.qos: dict[str, tuple[OfferedQos, ...]] = {}
+        self.counts: Counter[str] = Counter()
+        for topic in self.about.topics:
+            self.types.setdefault(topic.name, topic.type_name)
+            self.qos[topic.name] = (*self.qos.get(topic.name, ()), *topic.qos)
+            self.counts[topic.name] += topic.count
+        self.start_ns = self.about.start_ns
         self._check_counts()
 
     def run_metadata(self) -> dict[str, str]:
@@ -101,16 +119,47 @@ class BagFile:
                         metadata.update(record.metadata)
         return metadata
 
+    @cached_property
+    def recorded(self) -> dict[str, tuple[RecordedTopic, ...]]:
+        """How each topic was recorded: once, unless its channels differ in type or definition.
+
+        A file without a summary is read to its end for it.
+
+        Raises:
+            BagError: such a file is damaged.
+        """
+        found: dict[str, dict[tuple[str, ...], RecordedTopic]] = {}
+        for file, sums in zip(self.files, self._sums, strict=True):
+            for topic in (sums or self._go_through(file)).topics:
+                kinds = found.setdefault(topic.name, {})
+                kinds.setdefault((topic.type_name, str(topic.definition)), topic)
+        return {name: tuple(kinds.values()) for name, kinds in found.items()}
+
+    def types_of(self, topic: str) -> list[str]:
+        """Return every type of which messages of a topic are listed or recorded, sorted."""
+        listed = {each.type_name for each in self.about.topics if each.name == topic}
+        return sorted(listed | {each.type_name for each in self.recorded.get(topic, ())})
+
+    def found(self, name: str) -> list[str]:
+        """Return the topics that a name may mean: its own, or those that end with it."""
+        if name in self.types:
+            return [name]
+        return sorted(topic for topic in self.types if topic.endswith('/' + name))
+
     def topic(self, name: str) -> str:
         """Return the one topic that has the name, or whose name ends with it.
 
         Raises:
             BagError: none, or several.
         """
-        if name in self.types:
-            return name
-        found = [topic for topic in self.types if topic.endswith('/' + name)]
-        if len(found) != 1:
+        found = self.found(name)
+        if len(found) > 1:
+            times = 'twice' if len(found) == 2 else f'{len(found)} times'
+            raise BagError(
+                f"bag {self.path}: topic '{name}' is there {times}: {', '.join(found)}; "
+                'choose one by its whole name'
+            )
+        if not found:
             have = ', '.join(sorted(self.types)) or 'none'
             raise BagError(f"bag {self.path}: topic '{name}' expected, topics are {have}")
         return found[0]
@@ -123,8 +172,9 @@ class BagFile:
         """
         found = [topic for topic, name in self.types.items() if name == type_name]
         if len(found) != 1:
+            names = f' ({", ".join(sorted(found))})' if found else ''
             raise BagError(
-                f'bag {self.path}: {len(found)} topics of type {type_name}, expected one'
+                f'bag {self.path}: {len(found)} topics of type {type_name}{names}, expected one'
             )
         return found[0]
 
@@ -132,6 +182,8 @@ class BagFile:
         self, topics: Collection[str] | None = None, start_ns: int | None = None
     ) -> Iterator[RawMessage]:
         """Yield the messages of some topics, or of all, from a time on, in the order of time.
+
+        Messages that rosbag2 compressed one by one come decompressed.
 
         Raises:
             BagError: the bag is damaged; where all of a topic is read, also if one is missing.
@@ -141,7 +193,7 @@ class BagFile:
             with self._reading(file) as reader:
                 for _, channel, message in reader.iter_messages(topics, starting_at=start_ns):
                     read += 1
-                    yield RawMessage(channel.topic, message.log_time, message.data)
+                    yield RawMessage(channel.topic, message.log_time, decompressed(message.data))
         if start_ns is None:
             self._check_read(read, self.counts if topics is None else topics)
 
@@ -149,14 +201,20 @@ class BagFile:
         """Yield (time [ns], message) of one topic, decoded by the definitions in the bag.
 
         Raises:
-            BagError: the bag is damaged, or a message is missing.
+            BagError: the bag is damaged, a message is missing, or one cannot be decoded.
         """
+        kinds = self.types_of(topic)
+        if len(kinds) > 1:
+            raise BagError(
+                f'bag {self.path}: {topic} has the types {" and ".join(kinds)}, expected one'
+            )
         read = 0
         for file in self.files:
+            decoders = Decoders(self.path)
             with self._reading(file) as reader:
-                for _, _, message, decoded in reader.iter_decoded_messages([topic]):
+                for schema, channel, message in reader.iter_messages([topic]):
                     read += 1
-                    yield message.log_time, decoded
+                    yield message.log_time, decoders.decode(schema, channel, message)
         self._check_read(read, [topic])
 
     def _check_read(self, read: int, topics: Collection[str]) -> None:
@@ -168,72 +226,70 @@ class BagFile:
                 'a file of it is damaged'
             )
 
-    def _information(self) -> dict[str, Any]:
-        if not self.path.is_dir():
-            partial = partial_path(self.path)
-            reason = (
-                f'the recording was not finished, {partial} is what there is'
-                if partial.is_dir()
-                else 'no such directory'
+    def _check_storage(self) -> None:
+        about: BagMetadata = self.about
+        if about.storage != 'mcap':
+            raise BagError(
+                f"bag {self.path}: storage '{about.storage}', expected a rosbag2 directory with "
+                f'MCAP storage; cure: {CONVERT}'
             )
-            raise BagError(f'bag {self.path}: {reason}, expected a closed rosbag2 directory')
-        path = self.path / METADATA_FILE
-        try:
-            information = yaml.load(path.read_text(encoding='utf-8'), Loader=_YAML_LOADER)
-            information = information[ROOT_KEY]
-            storage = information['storage_identifier']
-        except FileNotFoundError as error:
-            raise self._foreign(f'no {METADATA_FILE}') from error
-        except (yaml.YAMLError, UnicodeDecodeError, KeyError, TypeError) as error:
-            raise self._foreign(f'{METADATA_FILE} is not that of rosbag2') from error
-        if storage != 'mcap':
-            raise self._foreign(f"storage '{storage}'")
-        return dict(information)
+        if about.compression not in ('', 'zstd'):
+            raise BagError(
+                f"bag {self.path}: compressed with '{about.compression}', expected zstd, or "
+                'compression within MCAP; cure: `ros2 bag convert` it'
+            )
 
     def _check_counts(self) -> None:
-        total = 0
-        for file in self.files:
-            with self._reading(file) as reader:
-                summary = reader.get_summary()
-                if summary is None or summary.statistics is None:
-                    return  # without sums there is nothing to compare
-                total += summary.statistics.message_count
+        if None in self._sums:
+            return  # without sums there is nothing to compare
+        total = sum(sums.extent.messages for sums in self._sums if sums)
         if total != sum(self.counts.values()):
             raise BagError(
                 f'bag {self.path}: holds {total} messages, expected '
                 f'{sum(self.counts.values())} as its {METADATA_FILE} says'
             )
 
+    def _sum_up(self, file: Path) -> Contents | None:
+        with self._reading(file) as reader:
+            return summed_up(reader)
+
+    def _go_through(self, file: Path) -> Contents:
+        with self._opened(file) as stream:
+            return gone_through(stream)
+
     @contextmanager
     def _reading(self, file: Path) -> Iterator[McapReader]:
+        with self._opened(file) as stream:
+            check_ends(stream)
+            yield SeekingReader(stream, validate_crcs=True)
+
+    @contextmanager
+    def _opened(self, file: Path) -> Iterator[IO[bytes]]:
+        """Open a file of the bag; what goes wrong with it becomes a BagError."""
         try:
-            with file.open('rb') as stream:
-                _check_ends(stream)
-                yield SeekingReader(
-                    stream, validate_crcs=True, decoder_factories=[DecoderFactory()]
-                )
+            with self._plain(file).open('rb') as stream:
+                yield stream
+        except BagError:
+            raise
         except FileNotFoundError as error:
-            raise BagError(f'bag {self.path}: {file.name} is missing') from error
+            raise BagError(
+                f'bag {self.path}: {file.name} is missing, expected every file that its '
+                f'{METADATA_FILE} lists; cure: copy it, or give one of the others by itself'
+            ) from error
+        except UnsupportedCompressionError as error:
+            raise BagError(
+                f'bag {self.path}: {file.name}: {error}, expected chunks in lz4, zstd or plain'
+            ) from error
         except DAMAGE as error:
             raise BagError(
-                f'bag {self.path}: {file.name} is damaged ({error or type(error).__name__}), '
+                f'bag {self.path}: {file.name} is damaged ({short(error)}), '
                 'expected a whole MCAP file'
             ) from error
 
-    def _foreign(self, reason: str) -> BagError:
-        return BagError(
-            f'bag {self.path}: {reason}, expected a rosbag2 directory with MCAP storage'
-        )
-
-
-def _check_ends(stream: BinaryIO) -> None:
-    size = stream.seek(0, os.SEEK_END)
-    if size == 0:
-        raise ValueError('empty')
-    stream.seek(0)
-    if stream.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
-        raise ValueError('not MCAP: it does not begin so')
-    stream.seek(max(0, size - len(MCAP0_MAGIC)))
-    if stream.read() != MCAP0_MAGIC or size < 2 * len(MCAP0_MAGIC):
-        raise ValueError('cut short: it does not end as MCAP does')
-    stream.seek(0)
+    def _plain(self, file: Path) -> Path:
+        """Return a file as MCAP; one that is compressed as a whole is unpacked once."""
+        if file.suffix != PACKED_SUFFIX:
+            return file
+        if file not in self._unpacked:
+            self._unpacked[file] = unpacked(file)
+        return Path(self._unpacked[file].name)

@@ -5,11 +5,11 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 from hexapod_doe.bags.bag_file import BagFile
-from hexapod_doe.bags.rosbag2 import METADATA_FILE, is_unfinished
+from hexapod_doe.bags.location import bag_folders, user_path
+from hexapod_doe.bags.mcap_file import is_mcap
 from hexapod_doe.bags.run_bag import COMPLETE, EPISODE_RESULT
 from hexapod_doe.errors import BagError
 
@@ -26,10 +26,15 @@ def is_complete(bag: str | Path) -> bool:
 
 
 def find_bags(path: str | Path) -> list[Path]:
-    """Return the closed bags at and below a folder, sorted by path."""
-    root = Path(path)
+    """Return the closed bags at and below a folder, sorted by path; an MCAP file is one itself.
+
+    Raises:
+        BagError: there is no such folder.
+    """
+    root = user_path(path)
+    if is_mcap(root) and root.is_file():
+        return [root]
     if not root.is_dir():
-        raise BagError(f'{root}: no such directory, expected a folder with bags')
-    # os.walk, unlike rglob, passes over a folder that is renamed meanwhile: runs go on.
-    folders = (Path(folder) for folder, _, names in os.walk(root) if METADATA_FILE in names)
-    return sorted(folder for folder in folders if not is_unfinished(folder))
+        reason = 'is a file' if root.exists() else 'no such directory'
+        raise BagError(f'{root}: {reason}, expected a folder with bags')
+    return sorted(bag_folders(root))

@@ -1,11 +1,13 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Reads the time stamp at the head of a serialised message, without decoding the rest."""
+"""What can be told of a serialised message without decoding it: its encoding and its stamp."""
 
 from __future__ import annotations
 
 import struct
+
+from zstandard import ZstdDecompressor
 
 _NANOSECONDS = 1_000_000_000
 # Four bytes say how the rest is encoded (DDS-XTYPES 1.3, 7.6.3.1.2), the second its byte order;
@@ -13,6 +15,32 @@ _NANOSECONDS = 1_000_000_000
 # with a header or a stamp.
 _LITTLE = struct.Struct('<4xiI')
 _BIG = struct.Struct('>4xiI')
+_HEADER_BYTES = 4
+# Representation identifiers 0x0000 (CDR_BE) to 0x000b (DELIMITED_CDR2_LE) of the same table.
+_ENCODINGS = range(0x0C)
+_ZSTD_MAGIC = b'\x28\xb5\x2f\xfd'
+
+
+def is_cdr(data: bytes) -> bool:
+    """Whether a message begins as every serialised one does."""
+    return len(data) >= _HEADER_BYTES and data[0] == 0 and data[1] in _ENCODINGS
+
+
+def decompressed(data: bytes) -> bytes:
+    """Return a message that rosbag2 compressed by itself as it was; any other as it is.
+
+    No serialised message begins as zstd does, so metadata.yaml need not say which ones are.
+
+    Raises:
+        ValueError, zstandard.ZstdError: it is damaged.
+    """
+    if not data.startswith(_ZSTD_MAGIC):
+        return data
+    stream = ZstdDecompressor().decompressobj()
+    whole = stream.decompress(data)
+    if not stream.eof:
+        raise ValueError('a compressed message is cut short')
+    return whole
 
 
 def stamp_ns(data: bytes) -> int:

@@ -10,6 +10,23 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from hexapod_doe.bags.bag_file import RawMessage
+from hexapod_doe.bags.spans import duration_text
+
+# No robot rests this long within a recording: clocks that were set, or stamps that were not.
+MOST_PAUSE_NS = 24 * 3600 * 1_000_000_000
+
+
+@dataclass(frozen=True)
+class Jump:
+    """Two recorded times, one after the other, that no clock went through."""
+
+    from_ns: int
+    to_ns: int
+
+    def __str__(self) -> str:
+        if self.to_ns < self.from_ns:
+            return f'recorded times go back by {duration_text(self.from_ns - self.to_ns)}'
+        return f'nothing was recorded for {duration_text(self.to_ns - self.from_ns)}'
 
 
 @dataclass(frozen=True)
@@ -24,6 +41,11 @@ class Playback:
     """Recorded frames against a clock that the caller reads.
 
     Every time named `now_ns` is of that clock: steady, in nanoseconds, from any origin.
+
+    Attributes:
+        paused: whether it is held.
+        jump: how recorded time jumped before the next frame, back or by more than a day; None if
+            it went on. That frame follows at once.
     """
 
     def __init__(
@@ -42,6 +64,7 @@ class Playback:
             paused: hold until `resume` or `step`.
         """
         self.paused = paused
+        self.jump: Jump | None = None
         self._read = read
         self._rate = rate
         self._loop = loop
@@ -55,6 +78,18 @@ class Playback:
     def finished(self) -> bool:
         """Whether every frame was taken."""
         return self._next is None
+
+    @property
+    def next_ns(self) -> int | None:
+        """Recorded time of the next frame; None after the last one."""
+        return self._next.time_ns if self._next else None
+
+    def recorded_ns(self, now_ns: int) -> int:
+        """Return the recorded time that is due now, and not before the next frame is taken."""
+        if self._anchor_ns is None or not self._rate:
+            return self._recorded_ns
+        passed = self._recorded_ns + round((now_ns - self._anchor_ns) * self._rate)
+        return passed if self._next is None else min(passed, self._next.time_ns)
 
     def wait_ns(self, now_ns: int) -> int | None:
         """Return in how many nanoseconds the next frame is due; 0 if it is, None if never."""
@@ -77,10 +112,13 @@ class Playback:
         if frame is None:
             raise ValueError('playback is finished, expected a frame that is left')
         self._next = next(self._frames, None)
-        if self._next is None and self._loop:
+        self.jump = _jump(frame, self._next)
+        again = self._next is None and self._loop
+        if again:
             self._frames = frames(self._read())
             self._next = next(self._frames, None)
-            # The first frame follows the last one at once.
+        if again or self.jump:
+            # The next frame follows this one at once.
             if self._anchor_ns is not None and self._rate:
                 self._anchor_ns += round((frame.time_ns - self._recorded_ns) / self._rate)
             self._recorded_ns = self._next.time_ns if self._next else 0
@@ -106,8 +144,15 @@ class Playback:
         if not self.paused:
             raise ValueError('playback is running, expected it to be paused')
         frame = self.take()
-        self._recorded_ns = frame.time_ns
+        if not self.jump:
+            self._recorded_ns = frame.time_ns
         return frame
+
+
+def _jump(frame: Frame, following: Frame | None) -> Jump | None:
+    if following is None or 0 <= following.time_ns - frame.time_ns <= MOST_PAUSE_NS:
+        return None
+    return Jump(frame.time_ns, following.time_ns)
 
 
 def frames(messages: Iterable[RawMessage]) -> Iterator[Frame]:

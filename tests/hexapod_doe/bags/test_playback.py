@@ -5,7 +5,7 @@
 
 import pytest
 from hexapod_doe.bags.bag_file import RawMessage
-from hexapod_doe.bags.playback import Frame, Playback, frames
+from hexapod_doe.bags.playback import MOST_PAUSE_NS, Frame, Jump, Playback, frames
 
 A, B, C = (RawMessage('/a', 100, b'a'), RawMessage('/b', 100, b'b'), RawMessage('/a', 140, b'c'))
 D = RawMessage('/a', 200, b'd')
@@ -97,3 +97,56 @@ def test_empty_bag_is_finished():
     player = Playback(tuple, loop=True)
     assert player.finished
     assert player.wait_ns(0) is None
+
+
+DAY = MOST_PAUSE_NS
+
+
+@pytest.mark.parametrize(
+    ('times', 'text'),
+    [
+        ((0, 40, 40 + 365 * DAY, 90 + 365 * DAY), 'nothing was recorded for 365.0 days'),
+        ((500, 540, 100, 150), 'recorded times go back by 0.0 s'),
+    ],
+)
+def test_a_jump_of_recorded_times_is_passed_over_and_told(times, text):
+    player = Playback(lambda: [RawMessage('/a', at, b'') for at in times], rate=2.0)
+    jumps = []
+    for due in (0, 20, 20, 45):  # what follows the jump keeps its distance
+        assert player.wait_ns(0) == due
+        player.take()
+        jumps.append(player.jump)
+    assert jumps == [None, Jump(times[1], times[2]), None, None]
+    assert str(jumps[1]) == text
+
+
+def test_a_jump_is_passed_over_after_steps_too():
+    times = (0, 40, 40 + 2 * DAY, 90 + 2 * DAY)
+    player = Playback(lambda: [RawMessage('/a', at, b'') for at in times], paused=True)
+    player.step()
+    player.step()
+    player.resume()
+    assert player.wait_ns(7) == 0
+    player.take()
+    assert player.wait_ns(7) == 50
+
+
+def test_a_pause_of_a_day_is_kept():
+    player = Playback(lambda: [RawMessage('/a', at, b'') for at in (0, DAY)])
+    assert player.wait_ns(0) == 0
+    player.take()
+    assert player.jump is None
+    assert (player.wait_ns(0), player.next_ns) == (DAY, DAY)
+
+
+def test_recorded_time_goes_on_between_frames_and_waits_for_none():
+    player = playback(rate=2.0)
+    assert player.recorded_ns(5) == 100
+    player.wait_ns(1_000)
+    player.take()
+    assert [player.recorded_ns(1_000 + passed) for passed in (0, 10, 20, 90)] == [
+        100,
+        120,
+        140,
+        140,
+    ]

@@ -62,7 +62,7 @@ def test_readers_do_not_import_ros(write_bag):
 
 
 def test_missing(tmp_path):
-    with pytest.raises(BagError, match='nowhere: no such directory, expected a closed rosbag2'):
+    with pytest.raises(BagError, match='nowhere: no such directory, expected a rosbag2 directory'):
         read_run(tmp_path / 'nowhere')
 
 

@@ -8,10 +8,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from importlib import import_module
+from typing import Protocol
 
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
@@ -32,6 +33,29 @@ def message_class(type_name: str) -> type:
             f"message type '{type_name}': not installed, expected <package>/msg/<Type> of a "
             'package in the environment'
         ) from error
+
+
+class Offered(Protocol):
+    """What a recorded publisher offered, policies by their names in rmw."""
+
+    @property
+    def reliability(self) -> str:
+        """Such as 'reliable'."""
+
+    @property
+    def durability(self) -> str:
+        """Such as 'transient_local'."""
+
+
+def replay_qos(offered: Sequence[Offered]) -> QoSProfile:
+    """Offer what every recorded publisher offered, and keep all of it until it is read."""
+    reliable = all(profile.reliability == 'reliable' for profile in offered)
+    latched = bool(offered) and all(p.durability == 'transient_local' for p in offered)
+    return QoSProfile(
+        reliability=ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE,
+        history=HistoryPolicy.KEEP_ALL,
+    )
 
 
 def subscribe_raw(
