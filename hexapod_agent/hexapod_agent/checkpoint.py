@@ -3,11 +3,14 @@
 
 """Checkpoints: a run between two episodes as one file, written whole or not at all.
 
-The file is a torch archive of tensors, numbers and text, and is read without running code.
+The file is a torch archive of tensors, numbers and text under a seal (`sealed_file`), and is read
+without running code. What is not to the last bit what was written is refused. Files of before the
+seal are held to the checksums of their archive, which do not cover all of it.
 """
 
-import os
-import pickle
+import zipfile
+from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,13 +18,15 @@ import torch
 
 from hexapod_agent.config import AgentConfig
 from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.sealed_file import Seal, read_seal, write_sealed
 from hexapod_agent.training import Trainer
 
-FORMAT = 'hexapod-checkpoint-1'
+FORMAT = 'hexapod-checkpoint-2'
+UNSEALED_FORMAT = 'hexapod-checkpoint-1'
 
 
 class CheckpointError(ValueError):
-    """A file is no usable checkpoint; the message names it and what was expected."""
+    """A file is no usable checkpoint, or cannot become one; the message names it and says why."""
 
 
 def save(path: str | Path, trainer: Trainer, to_resume: bool) -> None:
@@ -32,8 +37,10 @@ def save(path: str | Path, trainer: Trainer, to_resume: bool) -> None:
         trainer: The run, between two episodes.
         to_resume: Whether the run can go on from it. Without, it holds the actor alone, which
             acts the same, in less than a megabyte.
+
+    Raises:
+        CheckpointError: It cannot be written; the one before is still there.
     """
-    path = Path(path)
     content = {
         'format': FORMAT,
         'observations': trainer.spec.letters,
@@ -41,52 +48,72 @@ def save(path: str | Path, trainer: Trainer, to_resume: bool) -> None:
         'config': trainer.config.to_mapping(),
         'state': trainer.state_dict(to_resume),
     }
-    path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_name(f'{path.name}.partial')
-    with partial.open('wb') as file:
-        torch.save(content, file)
-        file.flush()
-        os.fsync(file.fileno())
-    partial.replace(path)
-    _sync_directory(path.parent)
+    try:
+        write_sealed(Path(path), partial(torch.save, content))
+    except (OSError, RuntimeError) as error:  # torch has its own way to say that a disk is full
+        raise CheckpointError(f'checkpoint {str(path)!r}: cannot be written: {error}') from error
 
 
 def load(path: str | Path, to_resume: bool = False) -> Trainer:
     """Read a checkpoint into a trainer that acts as the saved one, or goes on where it was.
 
     Raises:
-        CheckpointError: The file is missing, cut short, something else, or not `to_resume`.
+        CheckpointError: The file is missing, damaged, something else, of a configuration that
+            this version does not know, or not `to_resume`.
     """
     content = _read(Path(path))
+    try:
+        config = AgentConfig.from_mapping(content['config'], 'its configuration')
+        trainer = Trainer(ObservationSpec(content['observations']), config, content['seed'])
+        trainer.load_state_dict(content['state'])
+    except Exception as error:  # of another version, or whatever a file without a seal may hold
+        raise CheckpointError(
+            f'checkpoint {str(path)!r} cannot be used: {_reason(error)}'
+        ) from error
     if to_resume and 'replay' not in content['state']:
         raise CheckpointError(
             f'checkpoint {str(path)!r} holds an agent alone, expected a run that can be resumed'
         )
-    config = AgentConfig.from_mapping(content['config'], str(path))
-    trainer = Trainer(ObservationSpec(content['observations']), config, content['seed'])
-    trainer.load_state_dict(content['state'])
     return trainer
 
 
-def _read(path: Path) -> dict[str, Any]:
-    """Unpack the archive and check that it is one of ours."""
+def _read(path: Path) -> Mapping[str, Any]:
+    """Unpack the archive and check that it is a whole one of ours."""
     if not path.is_file():
         raise CheckpointError(f'checkpoint {str(path)!r} not found, expected a file of `train`')
     try:
-        content = torch.load(path, weights_only=True)
-    except (OSError, RuntimeError, EOFError, pickle.UnpicklingError) as error:
+        seal = read_seal(path)
+        if seal is Seal.ABSENT:
+            _check_archive(path)
+        content = torch.load(path, weights_only=True) if seal is not Seal.BROKEN else {}
+    except Exception as error:  # torch raises whatever damaged bytes lead it to
         raise CheckpointError(
-            f'checkpoint {str(path)!r} cannot be read, expected a whole file of `train`: {error}'
+            f'checkpoint {str(path)!r} cannot be read, expected a whole file of `train`: '
+            f'{_reason(error)}'
         ) from error
-    if not isinstance(content, dict) or content.get('format') != FORMAT:
+    found = content.get('format') if isinstance(content, dict) else None
+    if seal is Seal.BROKEN or (seal is Seal.ABSENT and found == FORMAT):
+        raise CheckpointError(
+            f'checkpoint {str(path)!r} is damaged: it is not what was written, by its SHA-256; '
+            'expected a whole file of `train`'
+        )
+    if found != (UNSEALED_FORMAT if seal is Seal.ABSENT else FORMAT):
         raise CheckpointError(f'checkpoint {str(path)!r}: expected format {FORMAT!r}')
     return content
 
 
-def _sync_directory(directory: Path) -> None:
-    """Make the renaming itself durable."""
-    descriptor = os.open(directory, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
+def _check_archive(path: Path) -> None:
+    """Hold a file without a seal to the checksums of its archive.
+
+    Raises:
+        zipfile.BadZipFile: One differs, or it is no archive.
+    """
+    with zipfile.ZipFile(path) as archive:
+        damaged = archive.testzip()
+    if damaged is not None:
+        raise zipfile.BadZipFile(f'the checksum of {damaged} differs')
+
+
+def _reason(error: Exception) -> str:
+    """Return what an error says, in one line; torch fills pages."""
+    return (str(error).strip() or type(error).__name__).splitlines()[0]

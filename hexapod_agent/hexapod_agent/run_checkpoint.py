@@ -25,12 +25,7 @@ def keep(bag: str | Path, trainer: Trainer) -> None:
     Raises:
         CheckpointError: it cannot be written; the one before is still there.
     """
-    path = checkpoint_path(bag)
-    try:
-        checkpoint.save(path, trainer, to_resume=True)
-    except (OSError, RuntimeError) as error:  # torch has its own way to say that a disk is full
-        path.with_name(f'{path.name}.partial').unlink(missing_ok=True)
-        raise CheckpointError(f'checkpoint {str(path)!r}: cannot be written: {error}') from error
+    checkpoint.save(checkpoint_path(bag), trainer, to_resume=True)
 
 
 def resumed(

@@ -138,7 +138,9 @@ def test_without_resume_a_run_begins_anew(
     pd.testing.assert_frame_equal(results(tmp_path / 'cut'), undisturbed, check_exact=True)
 
 
-@pytest.mark.parametrize('harm', ['no recording', 'damaged checkpoint', 'other configuration'])
+@pytest.mark.parametrize(
+    'harm', ['no recording', 'cut checkpoint', 'flipped bit', 'other configuration']
+)
 def test_a_run_that_cannot_go_on_begins_anew(
     graph, worker: Worker, goal, tmp_path: Path, undisturbed: pd.DataFrame, harm: str
 ) -> None:
@@ -147,9 +149,13 @@ def test_a_run_that_cannot_go_on_begins_anew(
     assert 'cut in episode' in train(graph, goal('cut'))
     if harm == 'no recording':
         (tmp_path / 'cut.partial').rename(tmp_path / 'elsewhere')
-    elif harm == 'damaged checkpoint':
+    elif harm == 'cut checkpoint':
         content = checkpoint_path(bag).read_bytes()
         checkpoint_path(bag).write_bytes(content[: len(content) // 2])
+    elif harm == 'flipped bit':
+        content = checkpoint_path(bag).read_bytes()
+        at = content.index(b'observations')
+        checkpoint_path(bag).write_bytes(content[:at] + b'O' + content[at + 1 :])
     else:
         assert 'cut in episode' in train(graph, goal('cut', seed=5, resume=False))
     worker.cut_at = EPISODES

@@ -4,13 +4,17 @@
 """A resumed run is the uninterrupted one to the last bit; a broken file is refused by name."""
 
 import pickle
+from pathlib import Path
 
+import numpy as np
 import pytest
 import torch
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.train import train_episode
 
 from hexapod_agent import checkpoint
+
+AGENTS = Path(__file__).parents[2] / 'ros_ws' / 'src' / 'hexapod_bringup' / 'agents'
 
 
 def advance(trainer, episodes: int) -> None:
@@ -96,9 +100,79 @@ def test_failed_write_leaves_the_old_file(make_trainer, tmp_path, monkeypatch):
         raise OSError('disk full')
 
     monkeypatch.setattr(torch, 'save', fail)
-    with pytest.raises(OSError, match='disk full'):
+    with pytest.raises(checkpoint.CheckpointError, match=r'a.pt.*cannot be written: disk full'):
         checkpoint.save(path, trainer, to_resume=False)
     assert path.read_bytes() == before
+
+
+def write_unsealed(path, trainer) -> None:
+    """Write a checkpoint as it was written before files had a seal."""
+    content = {
+        'format': 'hexapod-checkpoint-1',
+        'observations': trainer.spec.letters,
+        'seed': trainer.seed,
+        'config': trainer.config.to_mapping(),
+        'state': trainer.state_dict(to_resume=True),
+    }
+    torch.save(content, path)
+
+
+def mutated(content: bytes, rng: np.random.Generator) -> bytes:
+    """Return a file's content with one fault of a disk or a transfer."""
+    at, length = int(rng.integers(len(content))), int(rng.integers(1, 5000))
+    kind = rng.choice(['flip', 'cut', 'zero', 'insert', 'remove', 'swap'])
+    if kind == 'flip':
+        return content[:at] + bytes([content[at] ^ 1 << rng.integers(8)]) + content[at + 1 :]
+    if kind == 'cut':
+        return content[:at]
+    if kind == 'zero':
+        return content[:at] + bytes(len(content[at : at + length])) + content[at + length :]
+    if kind == 'insert':
+        return content[:at] + rng.bytes(length) + content[at:]
+    if kind == 'remove':
+        return content[:at] + content[at + length :]
+    other = int(rng.integers(len(content)))
+    first, second = sorted((at, other))
+    blocks = content[first : first + 512], content[second : second + 512]
+    if second - first < 512 or len(blocks[1]) < 512:
+        return content + b'\n'
+    between, rest = content[first + 512 : second], content[second + 512 :]
+    return content[:first] + blocks[1] + between + blocks[0] + rest
+
+
+def loaded_or_refused(path):
+    """Return the trainer of a checkpoint, and why there is none."""
+    try:
+        return checkpoint.load(path, to_resume=True), ''
+    except checkpoint.CheckpointError as error:
+        return None, str(error)
+
+
+def check_mutations(path, trainer, count: int) -> int:
+    """Load a checkpoint after each of many faults; return how many were refused."""
+    content, rng, refused = path.read_bytes(), np.random.default_rng(1), 0
+    for _ in range(count):
+        path.write_bytes(mutated(content, rng))
+        loaded, reason = loaded_or_refused(path)
+        if loaded is None:
+            assert str(path) in reason
+            assert '\n' not in reason
+            refused += 1
+        else:
+            assert_same(loaded, trainer)
+    return refused
+
+
+@pytest.mark.parametrize('count', [60, pytest.param(1500, marks=pytest.mark.slow)])
+@pytest.mark.parametrize('write', [checkpoint.save, write_unsealed])
+def test_damage_is_refused_or_harmless(make_trainer, tmp_path, write, count):
+    trainer = make_trainer()
+    advance(trainer, 2)
+    path = tmp_path / 'a.pt'
+    write(path, trainer, *[True] * (write is checkpoint.save))
+    # A file without a seal has bytes that no checksum covers, and nothing reads.
+    least = 0.95 if write is checkpoint.save else 0.5
+    assert check_mutations(path, trainer, count) >= least * count
 
 
 @pytest.mark.parametrize('share', [0.0, 0.3, 0.99])
@@ -108,6 +182,35 @@ def test_truncated_file_is_refused(make_trainer, tmp_path, share):
     content = path.read_bytes()
     path.write_bytes(content[: int(share * len(content))])
     with pytest.raises(checkpoint.CheckpointError, match=r'a.pt.*expected a whole file'):
+        checkpoint.load(path)
+
+
+@pytest.mark.parametrize('cut', [1, 40, 81])
+def test_a_lost_seal_does_not_make_an_old_file(make_trainer, tmp_path, cut):
+    path = tmp_path / 'a.pt'
+    checkpoint.save(path, make_trainer(), to_resume=False)
+    path.write_bytes(path.read_bytes()[:-cut])
+    with pytest.raises(checkpoint.CheckpointError, match=r'a.pt.*is damaged'):
+        checkpoint.load(path)
+
+
+def test_files_of_before_the_seal_still_load(make_trainer, tmp_path):
+    trainer = make_trainer()
+    advance(trainer, 2)
+    write_unsealed(tmp_path / 'old.pt', trainer)
+    assert_same(checkpoint.load(tmp_path / 'old.pt', to_resume=True), trainer)
+    shipped = checkpoint.load(AGENTS / 'ABCDE.pt')
+    assert (shipped.spec.letters, shipped.episode) == ('ABCDE', 300)
+
+
+def test_configuration_of_another_version_is_refused(make_trainer, tmp_path, monkeypatch):
+    path = tmp_path / 'a.pt'
+    trainer = make_trainer()
+    content = trainer.config.to_mapping()
+    content['ddpg']['momentum'] = 0.9
+    monkeypatch.setattr(type(trainer.config), 'to_mapping', lambda config: content)
+    checkpoint.save(path, trainer, to_resume=False)
+    with pytest.raises(checkpoint.CheckpointError, match=r"a.pt.*cannot be used.*'ddpg.momentum'"):
         checkpoint.load(path)
 
 

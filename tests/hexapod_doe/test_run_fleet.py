@@ -168,6 +168,25 @@ def test_checkpoint_of_other_hyperparameters_is_no_beginning(arguments, digests,
     assert campaign_digests(tmp_path) == digests
 
 
+def test_row_with_a_damaged_checkpoint_begins_anew(
+    arguments, hyperparameters, digests, tmp_path, capsys
+):
+    row = Campaign.open(place_plan(Path(arguments(tmp_path)[1]), tmp_path)).rows[0]
+    config = AgentConfig.load(hyperparameters)
+    trainer = Trainer(ObservationSpec(row.observations), config, row.seed)
+    train_episode(HexapodLine(row.observations, config), trainer)
+    run_checkpoint.keep(row.bag, trainer)
+    path = run_checkpoint.checkpoint_path(row.bag)
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+    assert run_fleet.main(arguments(tmp_path)) == 0
+    printed = ' '.join(capsys.readouterr().out.split())
+    assert f'run {row.run_id} begins anew: checkpoint' in printed
+    assert 'is damaged' in printed
+    assert campaign_digests(tmp_path) == digests
+
+
 def test_row_of_another_process_is_left_to_it(arguments, tmp_path, capsys):
     row = Campaign.open(place_plan(Path(arguments(tmp_path)[1]), tmp_path)).rows[0]
     with campaign_lock(tmp_path, shared=True), row_lock(row.bag):
