@@ -18,7 +18,8 @@ import rclpy
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import StepOutcome
-from hexapod_node.coroutines import sleep, start, until
+from hexapod_node.conditions import until_true
+from hexapod_node.coroutines import start, until
 from hexapod_node.matching import unheard
 from hexapod_node.qos import LOCK_STEP
 from hexapod_node.stamps import to_nanoseconds
@@ -42,6 +43,7 @@ _TOPICS = {topic: message_class(c.message_type) for c in _CHANNELS for topic in 
     'step_outcome': StepOutcome,
 }
 _POLL_S = 0.02
+_READY_S = 30.0
 _DRAIN_S = 10.0
 
 
@@ -61,15 +63,20 @@ class EvaluationNode(Node):
             self.create_subscription(kind, topic, partial(self._on_sample, topic), LOCK_STEP)
         self._client = ActionClient(self, TrainRun, 'train_run')
 
-    async def play(self, goal: TrainRun.Goal, sim: SimNode) -> None:
+    async def play(self, goal: TrainRun.Goal, sim: SimNode, timeout_s: float = _READY_S) -> None:
         """Have the agent play, once everything that the sim publishes is heard here.
 
         Raises:
-            GraphError: the agent refused the goal, or ended it early.
+            GraphError: no agent is there within the time, or the sim is not heard; the agent
+                refused the goal, or ended it early.
         """
         listeners = {self.resolve_topic_name(topic): 1 for topic in _TOPICS}
-        while unheard(sim.publishers, listeners) or not self._client.server_is_ready():
-            await sleep(self, _POLL_S)
+        if not await until_true(self, lambda: not unheard(sim.publishers, listeners), timeout_s):
+            fault = unheard(sim.publishers, listeners)
+            raise GraphError(f'{fault} after {timeout_s:g} s, expected that of this node')
+        if not await until_true(self, self._client.server_is_ready, timeout_s):
+            action = self.resolve_topic_name('train_run')
+            raise GraphError(f'action {action}: no server within {timeout_s:g} s, expected agent')
         handle = await until(self._client.send_goal_async(goal))
         if not handle.accepted:
             raise GraphError('the agent refused the run, expected it to be free')

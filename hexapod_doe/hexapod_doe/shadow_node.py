@@ -22,7 +22,8 @@ from hexapod_agent.observation import ObservationSpec
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import CpgCommand
 from hexapod_interfaces.srv import ResetEpisode
-from hexapod_node.coroutines import sleep, start, until
+from hexapod_node.conditions import until_true
+from hexapod_node.coroutines import start, until
 from hexapod_node.matching import unheard
 from hexapod_node.qos import LOCK_STEP
 from hexapod_node.raw_topics import message_class
@@ -42,6 +43,7 @@ from hexapod_doe.replays.shadowing import COMMAND, Answer, Comparison, command_v
 
 _OUTCOME = 'step_outcome'
 _POLL_S = 0.02
+_READY_S = 30.0
 
 
 class ShadowNode(Node):
@@ -78,14 +80,16 @@ class ShadowNode(Node):
         self.create_subscription(JointTrajectory, 'joint_trajectory', _ignore, LOCK_STEP)
         self._client = ActionClient(self, TrainRun, 'train_run')
 
-    async def play(self, checkpoint: Path) -> None:
+    async def play(self, checkpoint: Path, timeout_s: float = _READY_S) -> None:
         """Have the agent of this namespace play every episode.
 
         Raises:
-            BagError: the agent ended early; the text gives its reason.
+            BagError: no agent is there within the time, or it ended early; the text gives its
+                reason.
         """
-        while not self._client.server_is_ready():
-            await sleep(self, _POLL_S)
+        if not await until_true(self, self._client.server_is_ready, timeout_s):
+            action = self.resolve_topic_name('train_run')
+            raise BagError(f'action {action}: no server within {timeout_s:g} s, expected agent')
         goal = TrainRun.Goal(
             run_id='shadow', checkpoint=str(checkpoint.resolve()), episodes=len(self._spans)
         )

@@ -19,11 +19,14 @@ from hexapod_agent.policies import trained_policy
 from hexapod_agent.training import Trainer
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_doe.bags.bag_file import BagFile
+from hexapod_doe.errors import BagError
 from hexapod_doe.recorder_node import RecorderNode
-from hexapod_doe.replays.episodes import recorded_episodes
-from hexapod_doe.replays.shadowing import Recorded, shadow
+from hexapod_doe.replays.episodes import Series, recorded_episodes
+from hexapod_doe.replays.shadowing import COMMAND, Recorded, shadow
 from hexapod_doe.shadow import main
+from hexapod_doe.shadow_node import ShadowNode
 from hexapod_interfaces.action import TrainRun
+from hexapod_node.coroutines import start
 from hexapod_sim.sim_node import SimNode
 
 from hexapod_agent import checkpoint
@@ -127,3 +130,14 @@ def test_what_cannot_be_shadowed_is_one_line(bag: Path, tmp_path, capsys) -> Non
             main([str(option) for option in options])
         assert end.value.code == 2
         assert complaint in capsys.readouterr().err.splitlines()[-1]
+
+
+SAMPLE = Path(__file__).resolve().parents[2] / 'bags' / 'sample'
+
+
+def test_without_an_agent_the_shadow_says_so(graph) -> None:
+    bag = BagFile(SAMPLE)
+    spans = recorded_episodes(bag, Series(bag, COMMAND))
+    node = graph.add(ShadowNode(bag, spans, ObservationSpec('')))
+    with pytest.raises(BagError, match=r'/train_run: no server within 0\.1 s'):
+        graph.result(start(node.play(SAMPLE / 'agent.pt', timeout_s=0.1)))

@@ -1,0 +1,22 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""An evaluation on the graph ends with one line where a part of the graph is absent."""
+
+from __future__ import annotations
+
+import pytest
+from hexapod_agent.evaluate_node import EvaluationNode
+from hexapod_agent.evaluation import GraphError
+from hexapod_interfaces.action import TrainRun
+from hexapod_node.coroutines import start
+from hexapod_sim.sim_node import SimNode
+
+pytestmark = pytest.mark.graph
+
+
+def test_without_an_agent_it_says_so(graph) -> None:
+    sim = graph.add(SimNode())
+    node = graph.add(EvaluationNode())
+    with pytest.raises(GraphError, match=r'action /train_run: no server within 3 s'):
+        graph.result(start(node.play(TrainRun.Goal(), sim, timeout_s=3.0)))
