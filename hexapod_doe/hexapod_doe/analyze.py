@@ -30,7 +30,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.error('--table needs --response NAME, the column to analyse')
     try:
         analysis = analyse(_tables(args), _options(args), _confirmation_runs(args))
-    except (AnalysisError, BagError, FileNotFoundError) as error:
+    except (AnalysisError, BagError, OSError) as error:
         print(f'analyze: {error}', file=sys.stderr)
         return 2
     args.out.mkdir(parents=True, exist_ok=True)
@@ -92,9 +92,9 @@ def _confirmation_runs(args: argparse.Namespace) -> dict[str, list[float]]:
     runs: dict[str, list[float]] = {}
     for path in args.confirm:
         found = (
-            read_responses(path, response, args.factors)
-            if path.suffix == '.csv'
-            else bag_responses(path, response)
+            bag_responses(path, response)
+            if path.is_dir()
+            else read_responses(path, response, args.factors)
         )
         for label, values in found.items():
             runs.setdefault(label, []).extend(values)

@@ -14,3 +14,7 @@ class AnalysisError(ValueError):
 
 class CampaignError(ValueError):
     """A campaign cannot go on; the text names its folder and what was expected of it."""
+
+
+class TableError(AnalysisError):
+    """A table cannot be read or analysed; the text names the file, row or column, and the cure."""

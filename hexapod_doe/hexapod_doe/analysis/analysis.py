@@ -17,12 +17,13 @@ from hexapod_doe.choosing.confirm import confirm
 from hexapod_doe.choosing.estimands import estimand, pseudo_values
 from hexapod_doe.choosing.outlook import final_outlook
 from hexapod_doe.choosing.prediction import predict_all
+from hexapod_doe.errors import TableError
 from hexapod_doe.fitting.estimate import estimates
 from hexapod_doe.fitting.pipeline import Pipeline, run
 from hexapod_doe.fitting.pure_error import curvature
 from hexapod_doe.fitting.steps import aliases_of, main_effects, removals, step_record
 from hexapod_doe.tables.describe import design_caveats, failure_caveat, model_caveats, summarise
-from hexapod_doe.tables.table import RESPONSE, RunTable, TableError
+from hexapod_doe.tables.table import RESPONSE, RunTable
 
 
 def analyse(

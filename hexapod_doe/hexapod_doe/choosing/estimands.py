@@ -15,8 +15,7 @@ from math import comb
 import numpy as np
 import pandas as pd
 
-from hexapod_doe.errors import AnalysisError
-from hexapod_doe.tables.table import TableError
+from hexapod_doe.errors import AnalysisError, TableError
 
 Weights = Callable[[int], np.ndarray]
 

@@ -10,12 +10,13 @@ import pandas as pd
 
 from hexapod_doe.analysis.options import Options
 from hexapod_doe.designs.terms import CONSTANT, order
+from hexapod_doe.errors import TableError
 from hexapod_doe.fitting.elimination import Dropped, eliminate, with_parents
 from hexapod_doe.fitting.lenth import Lenth, lenth
 from hexapod_doe.fitting.model import CURVATURE, estimable_terms, model_matrix, parse_terms
 from hexapod_doe.fitting.regression import Fit, ols
 from hexapod_doe.fitting.transform import Transform, choose_transform
-from hexapod_doe.tables.table import RESPONSE, RunTable, TableError
+from hexapod_doe.tables.table import RESPONSE, RunTable
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from hexapod_doe.bags.run_record import RunRecord, find_bags, is_complete, read_
 from hexapod_doe.campaigns.campaign import PLAN_FILE
 from hexapod_doe.designs.plan_file import read_plan
 from hexapod_doe.designs.plan_types import Confirmation, PlanSettings
-from hexapod_doe.errors import BagError
+from hexapod_doe.errors import BagError, TableError
 from hexapod_doe.fitting.model import EMPTY_SET
 from hexapod_doe.tables.bag_response import DEFAULT_RESPONSE, response_of
 from hexapod_doe.tables.table import (
@@ -22,7 +22,6 @@ from hexapod_doe.tables.table import (
     RESPONSE,
     TERM_PREFIX,
     RunTable,
-    TableError,
     block_fault,
     build_rows,
 )

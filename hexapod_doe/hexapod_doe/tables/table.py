@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pandas as pd
 
-from hexapod_doe.errors import AnalysisError
+from hexapod_doe.errors import TableError
 from hexapod_doe.fitting.blocks import block_basis, no_blocks
 from hexapod_doe.fitting.model import labels
 
@@ -18,10 +18,6 @@ BLOCK = 'block'
 CURVE_COLUMNS = ('run_id', 'label', 'case', 'replicate', 'episode', 'return', 'average')
 TERM_PREFIX = 'term_'
 """Begins the columns of the curves that hold reward terms."""
-
-
-class TableError(AnalysisError):
-    """A table cannot be analysed; the message names the row and the column."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +73,7 @@ def build_rows(raw: pd.DataFrame, factors: Sequence[str]) -> tuple[pd.DataFrame,
     _check_levels(raw, factors)
     response, dropped = _finite_response(raw)
     raw = raw.assign(**{RESPONSE: response})
-    raw, repeated = _without_repeats(raw[np.isfinite(response)].reset_index(drop=True))
+    raw, repeated = _without_repeats(raw[np.isfinite(response)].reset_index(drop=True), factors)
     _check_variation(raw, factors)
     case, renumbered = _cases(raw, factors)
     replicate = case.groupby(case).cumcount() + 1
@@ -88,12 +84,10 @@ def build_rows(raw: pd.DataFrame, factors: Sequence[str]) -> tuple[pd.DataFrame,
         replicate = raw['replicate']
     rows = pd.DataFrame(
         {
-            'run_id': raw.get('run_id', pd.Series([f'row {i + 1}' for i in raw.index])).astype(
-                str
-            ),
+            'run_id': _run_ids(raw),
             'case': case,
             'replicate': replicate,
-            'run_order': raw.get('RunOrder', pd.Series(raw.index + 1)),
+            'run_order': _run_order(raw),
             'label': labels(raw[list(factors)]),
             **{factor: raw[factor].astype(int) for factor in factors},
             RESPONSE: raw[RESPONSE].astype(float),
@@ -105,19 +99,48 @@ def build_rows(raw: pd.DataFrame, factors: Sequence[str]) -> tuple[pd.DataFrame,
     return rows, (*dropped, *repeated, *renumbered)
 
 
+def centre_points(levels: pd.DataFrame) -> np.ndarray:
+    """Return which rows are centre points (n,): numeric factors at 0, categorical ones at ±1."""
+    return levels.eq(0).any(axis=1).to_numpy()
+
+
 def _check_levels(raw: pd.DataFrame, factors: Sequence[str]) -> None:
     if raw.empty:
         raise TableError('the table has no rows')
     levels = raw[list(factors)].apply(pd.to_numeric, errors='coerce')
-    centre = (levels == 0).all(axis=1)
-    bad = ~levels.isin([-1, 1]) & ~centre.to_numpy()[:, None]
-    if bad.to_numpy().any():
-        row, position = np.argwhere(bad.to_numpy())[0]
-        factor = factors[position]
+    if fault := _level_fault(levels):
+        row, factor, expected = fault
         raise TableError(
-            f'row {row + 1}, column {factor!r}: level {raw[factor].iloc[row]}, expected -1 or 1 '
-            '(0 only in a centre point, where every factor is 0)'
+            f'row {row + 1}, column {factor!r}: level {raw[factor].iloc[row]:g}, {expected}'
         )
+
+
+def _level_fault(levels: pd.DataFrame) -> tuple[int, str, str] | None:
+    """Return the row and factor of a level that cannot be, and what was expected.
+
+    One level 0 in one row is taken for a slip, not for the centre of a factor.
+    """
+    wrong = ~levels.isin([-1, 0, 1])
+    if wrong.to_numpy().any():
+        row, column = np.argwhere(wrong.to_numpy())[0]
+        return int(row), str(levels.columns[column]), 'expected -1 or 1'
+    zero = levels.eq(0)
+    rows = np.flatnonzero(centre_points(levels))
+    if not len(rows):
+        return None
+    odd = zero.ne(zero.iloc[rows[0]], axis=1).iloc[rows]
+    if odd.to_numpy().any() or zero.to_numpy().sum() == 1:
+        row = rows[int(np.argmax(odd.any(axis=1)))]
+        factor = str(levels.columns[int(np.argmax(zero.iloc[row]))])
+        return (
+            int(row),
+            factor,
+            (
+                'expected -1 or 1 (0 only in centre points, which have the same factors at 0: '
+                'the numeric ones)'
+            ),
+        )
+    return None
 
 
 def _finite_response(raw: pd.DataFrame) -> tuple[np.ndarray, tuple[str, ...]]:
@@ -170,18 +193,29 @@ def block_fault(case: pd.Series, block: pd.Series) -> str:
     return ''
 
 
-def _without_repeats(raw: pd.DataFrame) -> tuple[pd.DataFrame, tuple[str, ...]]:
-    """Drop a run that is listed twice; runs without a name of their own are replicates."""
+def _without_repeats(
+    raw: pd.DataFrame, factors: Sequence[str]
+) -> tuple[pd.DataFrame, tuple[str, ...]]:
+    """Drop a run that is listed twice; runs without a name of their own are replicates.
+
+    A name that comes again with other levels names another run: plans that follow each other, as a
+    base and its fold, number their runs alike.
+    """
+    again: list[str] = []
     for key in (['run_id'], ['RunOrder'], ['case', 'replicate'], ['StdOrder', 'replicate']):
-        if not set(key) <= set(raw.columns) or not raw.duplicated(key).any():
+        if not set(key) <= set(raw.columns):
             continue
-        first = raw.index[raw.duplicated(key)][0]
-        name = ', '.join(f'{column} {raw[column][first]}' for column in key)
-        same = raw.duplicated()
-        if not same[raw.duplicated(key)].all():
-            raise TableError(f'{name} occurs twice with different results, expected it once')
-        text = f'{int(same.sum())} rows repeat another one ({name}) and are left out.'
-        return raw[~same].reset_index(drop=True), (text,)
+        same_run = raw.duplicated([*key, *factors])
+        if same_run.any():
+            return _dropped(raw, key, same_run)
+        if raw.duplicated(key).any():
+            again.append(' and '.join(key))
+    if again:
+        text = (
+            f'Numbers of {"; ".join(again)} come again with other levels: the rows are taken as '
+            'runs of their own, of plans that follow each other.'
+        )
+        return raw, (text,)
     if raw.duplicated().any() and not {'replicate', 'run_id', 'RunOrder'} & set(raw.columns):
         count = int(raw.duplicated().sum())
         text = (
@@ -189,6 +223,40 @@ def _without_repeats(raw: pd.DataFrame) -> tuple[pd.DataFrame, tuple[str, ...]]:
         )
         return raw, (text,)
     return raw, ()
+
+
+def _dropped(
+    raw: pd.DataFrame, key: Sequence[str], same_run: pd.Series
+) -> tuple[pd.DataFrame, tuple[str, ...]]:
+    """Leave out rows that repeat another one to the last number."""
+    first = raw.index[same_run][0]
+    name = ', '.join(f'{column} {raw[column][first]}' for column in key)
+    same = raw.duplicated()
+    if not same[same_run].all():
+        raise TableError(f'{name} occurs twice with different results, expected it once')
+    text = f'{int(same.sum())} rows repeat another one ({name}) and are left out.'
+    return raw[~same].reset_index(drop=True), (text,)
+
+
+def _run_order(raw: pd.DataFrame) -> pd.Series:
+    """Return the order of the runs; numbers that come again follow those that came before."""
+    if 'RunOrder' not in raw:
+        return pd.Series(raw.index + 1, index=raw.index)
+    order = raw['RunOrder']
+    if not order.duplicated().any():
+        return order
+    first = order.groupby(order).cumcount()
+    ranked = pd.DataFrame({'plan': first, 'order': order}).sort_values(['plan', 'order']).index
+    return pd.Series(np.arange(1, len(raw) + 1), index=ranked).sort_index()
+
+
+def _run_ids(raw: pd.DataFrame) -> pd.Series:
+    """Return names of the runs; those that come again get a number."""
+    if 'run_id' not in raw:
+        return pd.Series([f'row {i + 1}' for i in raw.index], index=raw.index)
+    names = raw['run_id'].astype(str)
+    count = names.groupby(names).cumcount() + 1
+    return names.where(count == 1, names + ' (' + count.astype(str) + ')')
 
 
 def _cases(raw: pd.DataFrame, factors: Sequence[str]) -> tuple[pd.Series, tuple[str, ...]]:
@@ -207,9 +275,8 @@ def _cases(raw: pd.DataFrame, factors: Sequence[str]) -> tuple[pd.Series, tuple[
 
 
 def _yates(raw: pd.DataFrame, factors: Sequence[str]) -> pd.Series:
+    levels = raw[list(factors)]
     weights = 2 ** np.arange(len(factors))
-    position = ((raw[list(factors)].to_numpy(float) > 0) * weights).sum(axis=1)
-    centre = (raw[list(factors)] == 0).all(axis=1).to_numpy()
-    return (
-        pd.Series(np.where(centre, 2 ** len(factors), position)).rank(method='dense').astype(int)
-    )
+    position = ((levels.to_numpy(float) > 0) * weights).sum(axis=1)
+    position = position + np.where(centre_points(levels), 2 ** len(factors), 0)
+    return pd.Series(position).rank(method='dense').astype(int)

@@ -7,8 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from hexapod_doe.choosing.estimands import case_values, estimand, pseudo_values
-from hexapod_doe.errors import AnalysisError
-from hexapod_doe.tables.table import TableError
+from hexapod_doe.errors import AnalysisError, TableError
 
 SQUARES = np.arange(1.0, 11.0) ** 2
 CASE = pd.Series([7] * 10)

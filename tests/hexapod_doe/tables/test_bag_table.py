@@ -10,9 +10,8 @@ from hexapod_doe.designs.design import fraction
 from hexapod_doe.designs.plan_file import write_plan
 from hexapod_doe.designs.plan_table import make_plan
 from hexapod_doe.designs.plan_types import Confirmation
-from hexapod_doe.errors import BagError
+from hexapod_doe.errors import BagError, TableError
 from hexapod_doe.tables.bag_table import bag_responses, plan_rule, read_bags
-from hexapod_doe.tables.table import TableError
 
 from hexapod_doe import analyze
 

@@ -13,8 +13,8 @@ from hexapod_doe.analysis.options import Options
 from hexapod_doe.analysis.results import Analysis
 from hexapod_doe.designs.design import fraction
 from hexapod_doe.designs.plan_table import make_plan
+from hexapod_doe.errors import TableError
 from hexapod_doe.tables.csv_table import read_csv
-from hexapod_doe.tables.table import TableError
 
 LUCK = (-80.0, -40.0, 0.0, 40.0, 80.0)
 """What each seed adds to every run of it."""
