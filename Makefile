@@ -1,8 +1,8 @@
 # The project's verbs. `make help` lists them.
 SHELL := /bin/bash
-.SHELLFLAGS := -o pipefail -c
+.SHELLFLAGS := -e -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test test-slow lint type format bench film clean clean-demo
+.PHONY: help setup other-ros demo test test-slow lint type format bench film clean clean-demo
 
 VENV ?= .venv
 PACKAGES := hexapod_sim hexapod_cpg hexapod_agent hexapod_doe
@@ -18,23 +18,25 @@ DEMO_EPISODES := 4
 help:  ## list the verbs
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
 
-setup: ros_ws/install/.ready  ## make the virtual environment and build the workspace
+setup: other-ros ros_ws/install/.ready  ## make the virtual environment and build the workspace
 
-$(VENV)/.ready: requirements.txt requirements-ros.txt requirements-dev.txt constraints.txt
+other-ros:
+	@.ci/other_ros
+
+$(VENV)/.ready: requirements.txt requirements-ros.txt requirements-dev.txt constraints.txt | other-ros
 	@python=$$(.ci/prerequisites) && "$$python" -m venv $(VENV)
-	@echo 'Installing the libraries and ROS 2 into $(VENV) ...'
-	@$(VENV)/bin/python -m pip install --disable-pip-version-check --progress-bar off \
-		-r requirements.txt -r requirements-ros.txt -r requirements-dev.txt -c constraints.txt \
-		| awk '/^Collecting/ { if (++n % 20 == 0) print "  " n " packages: " $$2 } /^Installing/ { print "  unpacking" } { fflush() }'
+	@echo 'Installing the libraries and ROS 2 into $(VENV), 1 to 3 minutes ...'
+	@PYTHONUNBUFFERED=1 $(VENV)/bin/python -m pip install --disable-pip-version-check --progress-bar off \
+		-r requirements.txt -r requirements-ros.txt -r requirements-dev.txt -c constraints.txt | .ci/progress
 	@touch $@
 
-ros_ws/install/.ready: $(VENV)/.ready $(INTERFACES) $(INSTALLED)
-	@echo 'Building the ROS workspace ...'
+ros_ws/install/.ready: $(VENV)/.ready $(INTERFACES) $(INSTALLED) | other-ros
+	@echo 'Building the ROS workspace, 1 to 6 minutes ...'
 	@unset _ROS_WHEELS_BOOTSTRAP_COMPLETE; source $(VENV)/bin/activate \
 	&& export AMENT_PREFIX_PATH='$(abspath $(VENV))' CMAKE_PREFIX_PATH='$(abspath $(VENV))' \
 	&& cd ros_ws && python -m colcon build --symlink-install \
-		--event-handlers console_cohesion- console_stderr- \
-		--cmake-args -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF
+		--event-handlers console_cohesion- console_stderr- console_direct+ \
+		--cmake-args -DCMAKE_BUILD_TYPE=Release -DBUILD_TESTING=OFF | ../.ci/progress
 	@touch $@
 
 demo: setup  ## run a small real campaign through the graph, to a report

@@ -73,5 +73,17 @@ def test_only_node_files_import_rclpy(file: Path) -> None:
 
 
 @pytest.mark.parametrize('file', FILES, ids=name)
+def test_the_environment_is_judged_before_rclpy_is_loaded(file: Path) -> None:
+    names = [
+        node.module if isinstance(node, ast.ImportFrom) else node.names[0].name
+        for node in ast.parse(file.read_text(encoding='utf-8')).body
+        if isinstance(node, ast.Import | ast.ImportFrom)
+    ]
+    packages = [str(dotted).split('.')[0] for dotted in names]
+    if 'rclpy' in packages:
+        assert 'hexapod_node' in packages[: packages.index('rclpy')]
+
+
+@pytest.mark.parametrize('file', FILES, ids=name)
 def test_files_stay_readable(file: Path) -> None:
     assert len(file.read_text(encoding='utf-8').splitlines()) <= 300

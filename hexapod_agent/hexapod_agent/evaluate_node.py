@@ -14,7 +14,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import rclpy
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import StepOutcome
@@ -22,6 +21,7 @@ from hexapod_node.conditions import until_true
 from hexapod_node.coroutines import start, until
 from hexapod_node.matching import unheard
 from hexapod_node.qos import LOCK_STEP
+from hexapod_node.session import begin
 from hexapod_node.stamps import to_nanoseconds
 from hexapod_sim.sim_node import SimNode
 from nav_msgs.msg import Odometry
@@ -30,6 +30,7 @@ from rclpy.executors import Executor
 from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.node import Node
 from rclpy.task import Future
+from rclpy.utilities import try_shutdown
 
 from hexapod_agent.agent_node import AgentNode
 from hexapod_agent.evaluation import Episode, EpisodeMeter, GraphError
@@ -129,7 +130,7 @@ def episodes_on_graph(checkpoint: Path, starts: int, seed: int) -> Iterator[Epis
 @contextmanager
 def _graph() -> Iterator[tuple[Executor, SimNode, EvaluationNode]]:
     """Keep the nodes of a worker, without recorder, for as long as the context lasts."""
-    rclpy.init(args=['--ros-args', '-r', f'__ns:=/evaluate_{os.getpid()}'])
+    begin(['--ros-args', '-r', f'__ns:=/evaluate_{os.getpid()}'])
     executor = EventsExecutor()
     sim, node = SimNode(), EvaluationNode()
     nodes = (sim, CpgNode(), AgentNode(), node)
@@ -141,7 +142,7 @@ def _graph() -> Iterator[tuple[Executor, SimNode, EvaluationNode]]:
         executor.shutdown()
         for each in reversed(nodes):
             each.destroy_node()
-        rclpy.try_shutdown()
+        try_shutdown()
 
 
 def _spin_until_heard(executor: Executor, node: EvaluationNode, played: Future) -> bool:

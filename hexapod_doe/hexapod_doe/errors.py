@@ -8,6 +8,10 @@ class BagError(ValueError):
     """A bag cannot be read or written; the text names the path and what was expected of it."""
 
 
+class LockingError(ValueError):
+    """A folder lies where files cannot be locked; the text names it and says what to choose."""
+
+
 class AnalysisError(ValueError):
     """A table or an option does not allow the analysis; the text names it and the expectation."""
 

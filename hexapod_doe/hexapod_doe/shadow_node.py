@@ -15,7 +15,6 @@ from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-import rclpy
 from hexapod_agent.agent_node import AgentNode
 from hexapod_agent.checkpoint import load
 from hexapod_agent.observation import ObservationSpec
@@ -27,6 +26,7 @@ from hexapod_node.coroutines import start, until
 from hexapod_node.matching import unheard
 from hexapod_node.qos import LOCK_STEP
 from hexapod_node.raw_topics import message_class
+from hexapod_node.session import begin
 from hexapod_node.stamps import time_message, to_nanoseconds
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from rcl_interfaces.srv import SetParametersAtomically
@@ -34,6 +34,7 @@ from rclpy.action import ActionClient
 from rclpy.executors import Executor
 from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.node import Node
+from rclpy.utilities import try_shutdown
 from trajectory_msgs.msg import JointTrajectory
 
 from hexapod_doe.bags.bag_file import BagFile
@@ -200,7 +201,7 @@ def _graph(
     bag: BagFile, spans: Sequence[Span], spec: ObservationSpec
 ) -> Iterator[tuple[Executor, ShadowNode]]:
     """Keep agent and stand-in for as long as the context lasts."""
-    rclpy.init(args=['--ros-args', '-r', f'__ns:=/shadow_{os.getpid()}'])
+    begin(['--ros-args', '-r', f'__ns:=/shadow_{os.getpid()}'])
     executor = EventsExecutor()
     nodes: list[Node] = []
     try:
@@ -213,4 +214,4 @@ def _graph(
         executor.shutdown()
         for node in reversed(nodes):
             node.destroy_node()
-        rclpy.try_shutdown()
+        try_shutdown()

@@ -9,7 +9,6 @@ All writing happens in `<bag>.partial`, which holds an advisory lock while its w
 
 from __future__ import annotations
 
-import fcntl
 import os
 from collections.abc import Mapping
 from dataclasses import replace
@@ -28,7 +27,8 @@ from hexapod_doe.bags.rosbag2 import METADATA_FILE, ROOT_KEY, Topic, partial_pat
 from hexapod_doe.bags.run_bag import DIGEST, RUN_RECORD
 from hexapod_doe.bags.schema import definition, type_hash
 from hexapod_doe.bags.verify import check_messages
-from hexapod_doe.errors import BagError
+from hexapod_doe.errors import BagError, LockingError
+from hexapod_doe.file_lock import lock
 
 CHUNK_BYTES = 1 << 20
 
@@ -197,7 +197,13 @@ class BagWriter:
             ) from error
         except OSError as error:
             raise self._refusal(error) from error
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        try:
+            lock(file)
+        except LockingError as error:
+            file.close()
+            Path(file.name).unlink()  # nothing is in it, and it would look like a cut recording
+            self.partial.rmdir()
+            raise BagError(f'bag {self.bag}: {error}') from error
         return file
 
     def _finish(self) -> None:

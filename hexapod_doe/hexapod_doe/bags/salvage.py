@@ -9,7 +9,6 @@ be read. The result is a rosbag2 directory that any reader opens, but never a co
 
 from __future__ import annotations
 
-import fcntl
 import itertools
 import time
 from collections.abc import Iterator
@@ -25,7 +24,8 @@ from hexapod_doe.bags.bag_state import is_complete
 from hexapod_doe.bags.bag_writer import BagWriter
 from hexapod_doe.bags.rosbag2 import Topic, offered_qos, partial_path
 from hexapod_doe.bags.run_bag import RUN_RECORD, SALVAGED
-from hexapod_doe.errors import BagError
+from hexapod_doe.errors import BagError, LockingError
+from hexapod_doe.file_lock import lock
 
 _GLANCES = 5
 _GLANCE_S = 0.02
@@ -151,15 +151,17 @@ def _exclusive(bag: Path) -> Iterator[BinaryIO]:
         raise BagError(f'bag {bag}: no {path}, expected an unfinished recording') from error
     except BlockingIOError as error:
         raise BagError(f'bag {bag}: {path.parent} is still being written') from error
+    except LockingError as error:
+        raise BagError(f'bag {bag}: {error}') from error
 
 
 def _lock(stream: BinaryIO) -> None:
     """Lock a file, or find it locked by more than the glance of somebody who watches."""
     for _ in range(_GLANCES):
         try:
-            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            lock(stream)
         except BlockingIOError:
             time.sleep(_GLANCE_S)
         else:
             return
-    fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    lock(stream)

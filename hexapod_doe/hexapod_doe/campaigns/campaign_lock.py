@@ -9,7 +9,6 @@ holder is for the error message alone.
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 import socket
@@ -20,7 +19,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import TextIO
 
-from hexapod_doe.errors import CampaignError
+from hexapod_doe.errors import CampaignError, LockingError
+from hexapod_doe.file_lock import lock
 
 LOCK_FILE = 'campaign.lock'
 ROW_SUFFIX = '.lock'
@@ -31,7 +31,7 @@ def campaign_lock(directory: Path, shared: bool = False) -> Iterator[None]:
     """Hold a campaign's folder: a manager alone, or any number of processes that take single rows.
 
     Raises:
-        CampaignError: somebody else holds it, or the folder cannot be written.
+        CampaignError: somebody else holds it, or the folder cannot be written or locked.
     """
     with _lock(directory / LOCK_FILE, shared, f'campaign {directory}'):
         yield
@@ -42,7 +42,7 @@ def row_lock(bag: Path) -> Iterator[None]:
     """Hold one row, by the directory that its bag will have.
 
     Raises:
-        CampaignError: another process is at it, or the folder cannot be written.
+        CampaignError: another process is at it, or the folder cannot be written or locked.
     """
     with _lock(bag.with_name(bag.name + ROW_SUFFIX), False, f'run {bag.name}'):
         yield
@@ -60,11 +60,13 @@ def _lock(path: Path, shared: bool, what: str) -> Iterator[None]:
         ) from error
     with file:
         try:
-            fcntl.flock(file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
+            lock(file, shared)
         except BlockingIOError as error:
             raise CampaignError(
                 f'{what}: {_holder(file)} is at it, expected to be alone; end it first'
             ) from error
+        except LockingError as error:
+            raise CampaignError(f'{what}: {error}') from error
         _sign(file, what)
         yield
         # The file stays: to remove it would let two processes lock two files of its name.

@@ -16,7 +16,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-import rclpy
 from hexapod_agent.agent_node import AgentNode
 from hexapod_agent.config import AgentConfig
 from hexapod_agent.observation import CHANNELS, LETTERS, ObservationSpec
@@ -31,6 +30,7 @@ from hexapod_doe.manager_node import PARAMETERS as MANAGER_PARAMETERS
 from hexapod_doe.manager_node import ManagerNode
 from hexapod_doe.player_node import PlayerNode
 from hexapod_doe.recorder_node import RecorderNode
+from hexapod_node.session import begin
 from hexapod_node.sync import LOCKSTEP, REALTIME
 from hexapod_sim.fake_driver_node import FakeDriverNode
 from hexapod_sim.sim_node import SimNode
@@ -39,6 +39,7 @@ from rclpy.action import get_action_server_names_and_types_by_node
 from rclpy.lifecycle import LifecycleNode
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.utilities import try_shutdown
 
 from hexapod_agent import checkpoint
 from hexapod_bringup.description_node import DescriptionNode
@@ -108,7 +109,7 @@ def node_tables(bag: Path) -> str:
         checkpoint.save(agent, trainer, to_resume=False)
         given = [f'plan:={plan}', 'local_workers:=0', f'bag:={bag}']
         given += [f'checkpoint:={agent}', f'play:sync:={REALTIME}']
-        rclpy.init(args=['--ros-args', *(word for value in given for word in ('-p', value))])
+        begin(['--ros-args', *(word for value in given for word in ('-p', value))])
         sections = []
         for name, (make, executable) in _NODES.items():
             further = _interface_in_real_time(make) if name in _TWO_FACED else []
@@ -117,7 +118,7 @@ def node_tables(bag: Path) -> str:
             table = _node_table(node, played, further)
             sections.append(f'#### `{name}`: `ros2 run {executable}`\n\n{table}')
             node.destroy_node()
-        rclpy.shutdown()
+        try_shutdown()
     return '\n\n'.join(sections)
 
 

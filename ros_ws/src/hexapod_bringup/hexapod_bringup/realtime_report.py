@@ -20,15 +20,16 @@ from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from hexapod_agent.config import AgentConfig
 from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.training import Trainer
 from hexapod_interfaces.srv import ResetEpisode
+from hexapod_node.session import begin
 from hexapod_node.tick_meter import LATE_NS
 from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.node import Node
+from rclpy.utilities import try_shutdown
 from rich.console import Console
 from rich.table import Table
 
@@ -93,7 +94,7 @@ def measure(seconds: float, agent: Path, directory: Path) -> dict[str, Diagnosis
         ReportError: the agent does not come to drive.
     """
     namespace = f'/realtime_report_{os.getpid()}'
-    rclpy.init(args=[])
+    begin([])
     listener = Listener(namespace)
     executor = EventsExecutor()
     executor.add_node(listener)
@@ -118,7 +119,7 @@ def measure(seconds: float, agent: Path, directory: Path) -> dict[str, Diagnosis
     finally:
         executor.shutdown()
         listener.destroy_node()
-        rclpy.try_shutdown()
+        try_shutdown()
 
 
 @contextmanager

@@ -5,3 +5,7 @@
 
 Parameters from a table, quality of service, stamps, lock-step, coroutines, diagnostics, spinning.
 """
+
+from hexapod_node.environment import require_variables
+
+require_variables()  # before rclpy is loaded, which ends the process and names no variable

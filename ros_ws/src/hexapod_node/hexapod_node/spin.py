@@ -18,6 +18,8 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
+from hexapod_node.session import begin
+
 # EventsExecutor.spin() hangs in some builds of rclpy; a finite wait works everywhere.
 _WAIT_S = 0.5
 # Longest that the end of a process may take, against milliseconds as a rule. Fast DDS 2.14 waits
@@ -37,7 +39,7 @@ def run(make: Callable[[], Node | Sequence[Node]], args: Sequence[str] | None = 
     where a parameter or a file that the nodes start from is wrong. A middleware that is stuck at
     the end is left after 15 s, with status 1 and a traceback.
     """
-    rclpy.init(args=list(args) if args is not None else None)
+    begin(args)
     nodes: list[Node] = []
     status = 0
     try:

@@ -14,6 +14,8 @@ import signal
 import sys
 from collections.abc import Sequence
 
+from hexapod_node.environment import EnvironmentVariableError
+
 from ros2_mini.errors import CommandError
 
 VERBS: dict[str, dict[str, str]] = {
@@ -117,7 +119,7 @@ def _call(args: argparse.Namespace) -> int:
         # The reader has gone (`ros2 topic echo ... | head`): leave without a second complaint.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
-    except CommandError as error:
+    except (CommandError, EnvironmentVariableError) as error:
         print(error, file=sys.stderr)
         return 1
 

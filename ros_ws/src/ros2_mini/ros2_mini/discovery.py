@@ -4,12 +4,12 @@
 """Wait until the graph is known: the original asks a daemon, this command looks for itself."""
 
 import argparse
-import os
 import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
+from hexapod_node.environment import domain_id
 from rclpy.node import Node
 
 Found = TypeVar('Found')
@@ -74,7 +74,7 @@ def local_participants() -> int:
     Each holds the UDP port 7400 + 250 domain + 10 + 2 i for some i below 120 (RTPS 2.2, section
     9.6.1.1). The answer is 0 where the system does not list its ports.
     """
-    first = 7400 + 250 * int(os.environ.get('ROS_DOMAIN_ID') or 0) + 10
+    first = 7400 + 250 * domain_id() + 10
     ports = set(range(first, first + 240, 2))
     table = Path('/proc/net/udp')
     if not table.exists():

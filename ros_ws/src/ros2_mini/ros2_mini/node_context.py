@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from importlib.resources import as_file, files
 
 import rclpy
+from hexapod_node.environment import provide_log_directory
 from rclpy.executors import ExternalShutdownException
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.node import Node
@@ -40,7 +41,9 @@ def open_node(
 
     Raises:
         SystemExit: With the number of SIGTERM, if that has ended the node.
+        EnvironmentVariableError: ROS's logs cannot be written.
     """
+    provide_log_directory()
     rclpy.init(args=[], signal_handler_options=signals)
     node = rclpy.create_node(
         name or f'{NODE_NAME_PREFIX}_{os.getpid()}',

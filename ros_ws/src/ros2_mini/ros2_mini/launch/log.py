@@ -10,14 +10,18 @@ import time
 from pathlib import Path
 from types import TracebackType
 
+from hexapod_node.environment import provide_log_directory
+
 
 def make_log_directory() -> Path:
     """Create and return a directory of its own for the log of this launch.
 
     It lies in ROS_LOG_DIR, else in ROS_HOME/log, else in ~/.ros/log.
+
+    Raises:
+        EnvironmentVariableError: none of them can be written.
     """
-    home = os.environ.get('ROS_HOME') or '~/.ros'
-    base = Path(os.environ.get('ROS_LOG_DIR') or Path(home, 'log')).expanduser()
+    base = provide_log_directory()
     stamp = datetime.datetime.now().strftime('%Y-%m-%d-%H-%M-%S-%f')
     directory = base / f'{stamp}-{socket.gethostname()}-{os.getpid()}'
     directory.mkdir(parents=True)

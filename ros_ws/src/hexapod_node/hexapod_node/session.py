@@ -1,0 +1,18 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Begins ROS in a process: what every program does once, before its first node."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import rclpy
+
+from hexapod_node.environment import require_log_directory
+
+
+def begin(args: Sequence[str] | None = None) -> None:
+    """Initialise rclpy with ROS arguments, those of the command line when None."""
+    require_log_directory()
+    rclpy.init(args=list(args) if args is not None else None)
