@@ -86,10 +86,13 @@ class ManagerNode(Node):
             raise FileNotFoundError(f"plan '{plan}': no such file, expected a plan.csv of `plan`")
         self._held = ExitStack()
         self._held.enter_context(campaign_lock(plan.resolve().parent))
-        self._campaign = Campaign.open(plan, self._parameter('attempts'))
         self._settings = RunSettings(
             self._parameter('episodes'), self._parameter('config'), self._parameter('record_every')
         )
+        self._campaign = Campaign.open(
+            plan, self._parameter('attempts'), self._settings.expected()
+        )
+        self._campaign.check_own()
         self._failures = FailureLog(self._campaign.directory)
         self._failures.clear()
         self._workers: dict[str, WorkerPeer] = {}

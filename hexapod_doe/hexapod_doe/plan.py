@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from hexapod_doe.campaigns.plan_guard import check_free
 from hexapod_doe.designs.aliases import (
     alias_sets,
     defining_relation,
@@ -164,6 +165,7 @@ def _design(args: argparse.Namespace) -> Design:
 
 def _finish(plan: Plan, levels: np.ndarray, out: Path) -> None:
     """Write a plan and print what its cases can and cannot tell apart."""
+    check_free(plan, out)
     write_plan(plan, out)
     settings = plan.settings
     assert settings is not None  # made here, not read

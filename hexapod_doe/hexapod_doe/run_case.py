@@ -15,7 +15,6 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from hexapod_doe.bags.run_record import is_complete
 from hexapod_doe.campaigns.campaign import Row, RunSettings, read_rows
 from hexapod_doe.campaigns.campaign_lock import campaign_lock, row_lock
 from hexapod_doe.campaigns.folder import read_progress
@@ -25,38 +24,50 @@ from hexapod_doe.designs.plan_file import PlanError
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Return 0 if the row is done, 1 if it is not, 2 if the plan has no such row."""
+    """Return 0 if the row is done, 1 if it is not, 2 after an error of plan or options."""
     args = parser().parse_args(arguments)
     try:
         plan = place_plan(args.plan, args.out)
         row = _row(plan, args.row)
-    except (PlanError, OSError) as error:
+        settings = _settings(args)
+        state = row.bag_state(settings.expected())
+    except (ValueError, OSError) as error:
         print(f'run_case: {error}', file=sys.stderr)
         return 2
-    if is_complete(row.bag):
+    if state.other:
+        print(
+            f'run_case: {row.run_id} has the bag of another run ({state.other}); give the options '
+            f'that it was made with, or move {row.bag} away to have the row trained anew',
+            file=sys.stderr,
+        )
+        return 2
+    if state.done:
         print(f'{row.run_id} is done: {row.bag}')
         return 0
     try:
         with campaign_lock(plan.resolve().parent, shared=True), row_lock(row.bag):
-            return _train(row, args)
+            return _train(row, settings, args.stall)
     except (ValueError, OSError) as error:
         print(f'run_case: {error}', file=sys.stderr)
         return 1
 
 
-def _train(row: Row, args: argparse.Namespace) -> int:
+def _settings(args: argparse.Namespace) -> RunSettings:
+    config = str(args.hyperparameters.resolve(strict=True)) if args.hyperparameters else ''
+    return RunSettings(args.episodes, config, args.record_every)
+
+
+def _train(row: Row, settings: RunSettings, stall_s: float) -> int:
     """Train the row and judge its bag."""
     from hexapod_doe.case_node import train_row  # what is done needs neither ROS nor torch
 
-    config = str(args.hyperparameters.resolve(strict=True)) if args.hyperparameters else ''
-    settings = RunSettings(args.episodes, config, args.record_every)
     try:
-        train_row(row, settings, args.stall)
+        train_row(row, settings, stall_s)
     except SystemExit:  # of the nodes; after a signal it is 0, whatever the bag lacks
         faulthandler.cancel_dump_traceback_later()
     directory = row.bag.parent.parent
     write_page(read_progress(directory), directory)
-    if not is_complete(row.bag):
+    if not row.bag_state(settings.expected()).done:
         print(f'run_case: {row.run_id} is not done, the same command goes on', file=sys.stderr)
         return 1
     print(f'{row.run_id} is done: {row.bag}')

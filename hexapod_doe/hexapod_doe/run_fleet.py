@@ -24,7 +24,7 @@ from hexapod_agent.fleet.robots import Robots
 from hexapod_agent.fleet.stacked import StackedLearners
 from hexapod_agent.observation import ObservationSpec
 
-from hexapod_doe.campaigns.campaign import Campaign
+from hexapod_doe.campaigns.campaign import Campaign, shared_settings
 from hexapod_doe.campaigns.campaign_lock import campaign_lock
 from hexapod_doe.campaigns.fleet_campaign import FleetCampaign
 from hexapod_doe.campaigns.fleet_processes import train_in_processes
@@ -84,7 +84,9 @@ def _run(args: argparse.Namespace) -> int:
     plan = place_plan(args.plan, args.out)
     directory = plan.resolve().parent
     with campaign_lock(directory, shared=True):
-        campaign = Campaign.open(plan, attempts=1)
+        shared = shared_settings(config, args.episodes or config.training.episodes)
+        campaign = Campaign.open(plan, attempts=1, shared=shared)
+        campaign.check_own()
         campaign.check_writable()
         due = [row.observations for row in campaign.rows if row.run_id not in campaign.done]
         processes = args.processes or (_CORES if is_cpu(args.device) else 1)
@@ -92,7 +94,7 @@ def _run(args: argparse.Namespace) -> int:
             count = min(processes, len(due))
             for what in train_in_processes(directory, count, _options(plan, args, count, due)):
                 print(f'run_fleet: {what}', file=sys.stderr)
-            campaign = Campaign.open(plan, attempts=1)
+            campaign = Campaign.open(plan, attempts=1, shared=shared)
         elif due:
             _train(campaign, config, due, args)
     print(f'{len(campaign.done)} of {len(campaign.rows)} runs are in {campaign.directory}')

@@ -16,13 +16,19 @@ from hexapod_doe.errors import BagError
 
 def is_complete(bag: str | Path) -> bool:
     """Whether the bag is closed, sound, and holds every episode that its run was to have."""
+    return complete_metadata(bag) is not None
+
+
+def complete_metadata(bag: str | Path) -> dict[str, str] | None:
+    """Return what a complete bag says of its run; None if there is none."""
     try:
         file = BagFile(Path(bag))
         metadata = file.run_metadata()
         recorded = file.counts[file.topic_of_type(EPISODE_RESULT)]
     except BagError:
-        return False
-    return metadata.get('status') == COMPLETE and str(recorded) == metadata.get('episodes')
+        return None
+    whole = metadata.get('status') == COMPLETE and str(recorded) == metadata.get('episodes')
+    return metadata if whole else None
 
 
 def find_bags(path: str | Path) -> list[Path]:

@@ -43,9 +43,16 @@ def located(path: str | Path) -> Path:
 
 
 def bag_folders(root: Path) -> Iterator[Path]:
-    """Yield the directories of closed bags at and below a folder."""
+    """Yield the directories of closed bags at and below a folder, once, following links."""
+    seen: set[str] = set()
     # os.walk, unlike rglob, passes over a folder that is renamed meanwhile: runs go on.
-    for folder, _, names in os.walk(root):
+    for folder, below, names in os.walk(root, followlinks=True):
+        real = os.path.realpath(folder)
+        if real in seen:  # a link leads back, or twice to one place
+            below.clear()
+            continue
+        seen.add(real)
+        below.sort()
         if METADATA_FILE in names and not is_unfinished(Path(folder)):
             yield Path(folder)
 

@@ -11,13 +11,20 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from hexapod_doe.bags.run_record import is_complete
+import yaml
+from hexapod_agent.config import AgentConfig
+
+from hexapod_doe.bags.bag_state import complete_metadata
+from hexapod_doe.bags.run_identity import differences, run_identity, settings
 from hexapod_doe.designs.plan_file import read_plan
+from hexapod_doe.designs.plan_types import Plan
 from hexapod_doe.errors import CampaignError
 
 PLAN_FILE = 'plan.csv'
 RUNS_FOLDER = 'runs'
 _PROBE_BYTES = 1 << 20
+_NAMED = 8
+"""Rows that a message names."""
 
 
 @dataclass(frozen=True)
@@ -33,6 +40,37 @@ class Row:
     """Every column of the row, for the bag."""
 
 
+    @property
+    def identity(self) -> dict[str, str]:
+        """What the plan says of the run: its sensors and its seed."""
+        return run_identity({'observations': self.observations, 'seed': str(self.seed)})
+
+    def bag_state(self, shared: Mapping[str, str]) -> BagState:
+        """Say whether there is a whole bag at the row's place, and whether it is the row's.
+
+        Args:
+            shared: what all runs are to have in common, see `settings`; empty where unknown.
+        """
+        found = complete_metadata(self.bag)
+        if found is None:
+            return BagState(whole=False)
+        return BagState(True, differences(run_identity(found), self.identity | dict(shared)))
+
+
+@dataclass(frozen=True)
+class BagState:
+    """What is at the place of a row's bag."""
+
+    whole: bool
+    other: str = ''
+    """How the run of a whole bag differs from the row; empty if it is the row's."""
+
+    @property
+    def done(self) -> bool:
+        """Whether the row has its bag."""
+        return self.whole and not self.other
+
+
 def read_rows(plan: Path) -> tuple[Row, ...]:
     """Read the rows of a plan in its run order; their bags are to lie beside it.
 
@@ -40,8 +78,11 @@ def read_rows(plan: Path) -> tuple[Row, ...]:
         FileNotFoundError: there is no such plan.
         hexapod_doe.designs.plan_file.PlanError: the file is not a plan.
     """
-    directory = plan.resolve().parent
-    table = read_plan(plan).rows.sort_values('RunOrder')
+    return rows_of(read_plan(plan), plan.resolve().parent)
+
+
+def rows_of(plan: Plan, directory: Path) -> tuple[Row, ...]:
+    """Return the rows of a plan in its run order; their bags are to lie in a campaign's folder."""
     return tuple(
         Row(
             run_id=row['run_id'],
@@ -50,7 +91,7 @@ def read_rows(plan: Path) -> tuple[Row, ...]:
             bag=directory / RUNS_FOLDER / row['run_id'],
             metadata={str(key): str(value) for key, value in row.items()},
         )
-        for row in table.to_dict('records')
+        for row in plan.rows.sort_values('RunOrder').to_dict('records')
     )
 
 
@@ -65,38 +106,84 @@ class RunSettings:
     record_every: int = 0
     """Every how many episodes all topics are recorded; 0 for never."""
 
+    def expected(self) -> dict[str, str]:
+        """Return what the bag of each run will say of them, see `bags.run_identity.settings`.
+
+        Raises:
+            hexapod_agent.config.ConfigError: the file cannot be used.
+        """
+        if self.config and not Path(self.config).exists():  # the workers have it
+            return settings({'episodes': str(self.episodes)})
+        return shared_settings(AgentConfig.load(self.config or None), self.episodes)
+
+
+def shared_settings(config: AgentConfig, episodes: int) -> dict[str, str]:
+    """Return what the bag of each run will say of its length and configuration."""
+    text = yaml.safe_dump(config.to_mapping(), sort_keys=False)
+    return settings({'episodes': str(episodes), 'config': text})
+
 
 @dataclass
 class Campaign:
     """The state of a plan's rows.
 
-    Rows go out in the plan's run order. A row is done when its bag is closed and whole.
+    Rows go out in the plan's run order. A row is done when its bag is closed, whole and its own.
     """
 
     directory: Path
     rows: tuple[Row, ...]
     attempts: int = 3
     """How often a row may be tried before it counts as failed."""
+    shared: Mapping[str, str] = field(default_factory=dict)
+    """Length and configuration of all runs; empty where they are not known."""
     done: set[str] = field(default_factory=set)
     running: dict[str, str] = field(default_factory=dict)
     """Worker by run id."""
     reasons: dict[str, list[str]] = field(default_factory=dict)
     """Why each try of a run failed, by run id."""
+    others: dict[str, str] = field(default_factory=dict)
+    """Rows at whose place there is the whole bag of another run, and how that differs."""
     tried: dict[str, set[str]] = field(default_factory=dict)
     """Workers on which a run failed or got stuck, by run id."""
 
     @classmethod
-    def open(cls, plan: Path, attempts: int = 3) -> Campaign:
+    def open(
+        cls, plan: Path, attempts: int = 3, shared: Mapping[str, str] | None = None
+    ) -> Campaign:
         """Read a plan and find out from the bags beside it which rows are done.
+
+        Args:
+            plan: its file.
+            attempts: how often a row may be tried.
+            shared: length and configuration of all runs, see `RunSettings.expected`.
 
         Raises:
             FileNotFoundError: there is no such plan.
             hexapod_doe.designs.plan_file.PlanError: the file is not a plan.
         """
         rows = read_rows(plan)
-        campaign = cls(plan.resolve().parent, rows, attempts)
-        campaign.done = {row.run_id for row in rows if is_complete(row.bag)}
+        campaign = cls(plan.resolve().parent, rows, attempts, shared or {})
+        states = {row.run_id: row.bag_state(campaign.shared) for row in rows}
+        campaign.done = {run_id for run_id, state in states.items() if state.done}
+        campaign.others = {run_id: state.other for run_id, state in states.items() if state.other}
         return campaign
+
+    def check_own(self) -> None:
+        """Make sure that no row's place is taken by the bag of another run.
+
+        Raises:
+            CampaignError: one is; the text names the rows and the cure.
+        """
+        if not self.others:
+            return
+        named = list(self.others.items())[:_NAMED]
+        more = f' and {len(self.others) - _NAMED} more' if len(self.others) > _NAMED else ''
+        raise CampaignError(
+            f'campaign {self.directory}: {len(self.others)} of {len(self.rows)} rows have the bag '
+            f'of another run: {"; ".join(f"{run_id} ({why})" for run_id, why in named)}{more}; '
+            'give the options that they were made with, use a folder of its own, or move these '
+            f'bags out of {self.directory / RUNS_FOLDER} to have the rows trained anew'
+        )
 
     @property
     def failed(self) -> list[str]:
@@ -122,21 +209,29 @@ class Campaign:
             tried = self.tried.get(row.run_id, set())
             if row.run_id in gone or (worker in tried and not tried.issuperset(present)):
                 continue
-            if is_complete(row.bag):  # by somebody who was given up
+            if self.has_bag(row):  # by somebody who was given up
                 self.done.add(row.run_id)
                 continue
             self.running[row.run_id] = worker
             return row
         return None
 
+    def has_bag(self, row: Row) -> bool:
+        """Whether a row has its bag, whoever made it."""
+        return row.bag_state(self.shared).done
+
     def complete(self, row: Row, reason: str = '') -> bool:
-        """Count a row as done if its bag is whole; return whether it is.
+        """Count a row as done if its bag is whole and its own; return whether it is.
 
         Args:
             row: whose run has ended.
             reason: why it failed if the bag is not whole, where something is known.
         """
-        if not is_complete(row.bag):
+        state = row.bag_state(self.shared)
+        if state.other:
+            self.fail(row, f'bag {row.bag} is of another run: {state.other}')
+            return False
+        if not state.whole:
             self.fail(row, reason or f'bag {row.bag} is not complete')
             return False
         self.running.pop(row.run_id, None)

@@ -34,7 +34,7 @@ class Dashboard:
             console: where to show it; the terminal unless given.
         """
         self._campaign = campaign
-        self._bags = {row.run_id: row.bag for row in campaign.rows}
+        self._rows = {row.run_id: row for row in campaign.rows}
         self._current: dict[str, Run] = {}
         self._began: dict[str, float] = {}
         self._finished: list[Run] = []
@@ -88,7 +88,7 @@ class Dashboard:
             self.log(text)
             return
         if done:
-            run = read_row(self._bags[run.run_id], run.run_id, run.observations)
+            run = read_row(self._rows[run.run_id])
             self.progress.runs[run.run_id] = run
             self._finished.append(run)
         elif run.run_id in self._campaign.failed:

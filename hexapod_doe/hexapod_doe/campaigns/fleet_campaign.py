@@ -13,7 +13,6 @@ from typing import Self
 from hexapod_agent.config import AgentConfig
 from hexapod_agent.summary import EpisodeSummary
 
-from hexapod_doe.bags.bag_state import is_complete
 from hexapod_doe.campaigns.campaign import Campaign, Row
 from hexapod_doe.campaigns.campaign_lock import row_lock
 from hexapod_doe.campaigns.dashboard import Dashboard
@@ -77,7 +76,7 @@ class FleetCampaign:
         while (row := self._campaign.take(_NAME)) is not None:
             if not self._lock(row):
                 elsewhere.append(row)
-            elif is_complete(row.bag) or self._in_vain(row):  # another process was at it
+            elif self._campaign.has_bag(row) or self._in_vain(row):  # another process was at it
                 self._locks.pop(row.run_id).close()
                 self._campaign.complete(row, self._in_vain(row))
             else:

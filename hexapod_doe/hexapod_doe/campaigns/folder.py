@@ -16,12 +16,11 @@ from mcap_ros2.decoder import DecoderFactory
 from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.bags.rosbag2 import partial_path
 from hexapod_doe.bags.run_bag import EPISODE_RESULT, RUN_RECORD
-from hexapod_doe.bags.run_record import is_complete
+from hexapod_doe.bags.run_identity import settings
 from hexapod_doe.bags.salvage import whole_records
-from hexapod_doe.campaigns.campaign import PLAN_FILE, RUNS_FOLDER
+from hexapod_doe.campaigns.campaign import PLAN_FILE, Row, read_rows
 from hexapod_doe.campaigns.failures import read_failures
 from hexapod_doe.campaigns.progress import Progress, Run, State
-from hexapod_doe.designs.plan_file import read_plan
 from hexapod_doe.errors import LockingError
 from hexapod_doe.file_lock import lock
 
@@ -39,12 +38,8 @@ def read_progress(directory: Path, known: Mapping[str, Run] | None = None) -> Pr
         FileNotFoundError: there is no plan.
         hexapod_doe.designs.plan_file.PlanError: its file is not a plan.
     """
-    rows = read_plan(directory / PLAN_FILE).rows.sort_values('RunOrder')
     had = {run.run_id: run for run in (known or {}).values() if run.state is State.DONE}
-    runs = [
-        had.get(run_id) or read_row(directory / RUNS_FOLDER / run_id, run_id, observations)
-        for run_id, observations in zip(rows['run_id'], rows['observations'], strict=True)
-    ]
+    runs = [had.get(row.run_id) or read_row(row) for row in read_rows(directory / PLAN_FILE)]
     _add_failures(runs, read_failures(directory))
     return Progress(directory.resolve().name, {run.run_id: run for run in runs})
 
@@ -56,15 +51,18 @@ def _add_failures(runs: Sequence[Run], reasons: Mapping[str, Sequence[str]]) -> 
             run.state, run.reason = State.FAILED, reasons[run.run_id][-1]
 
 
-def read_row(bag: Path, run_id: str, observations: str) -> Run:
+def read_row(row: Row) -> Run:
     """Read how far a row is from its bag, whole, unfinished or not there."""
-    run = Run(run_id, observations)
-    partial = partial_path(bag)
-    if is_complete(bag):
+    run = Run(row.run_id, row.observations)
+    partial = partial_path(row.bag)
+    bag = row.bag_state({})
+    if bag.other:
+        run.state, run.reason = State.OTHER, bag.other
+    elif bag.whole:
         run.state = State.DONE
-        _read_whole(run, BagFile(bag))
+        _read_whole(run, BagFile(row.bag))
     elif partial.is_dir():
-        file = partial / f'{bag.name}_0.mcap'
+        file = partial / f'{row.bag.name}_0.mcap'
         run.state = State.RUNNING if _held(file) else State.INTERRUPTED
         _read_unfinished(run, file)
     return run
@@ -107,6 +105,7 @@ def _fill(run: Run, metadata: Mapping[str, str], topic: str, results: Sequence[A
     run.returns = [returns[episode] for episode in sorted(returns)]
     run.worker = topic.rsplit('/', 1)[0]
     run.planned = int(metadata['episodes'])
+    run.settings = settings(metadata)
     run.earlier = min(int(metadata.get('resumed', '0')), len(returns))
     if results:
         run.reward = results[-1].average_return

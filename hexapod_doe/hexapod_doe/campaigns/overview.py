@@ -22,6 +22,7 @@ _STYLES = {
     State.RUNNING: 'cyan',
     State.INTERRUPTED: 'yellow',
     State.FAILED: 'red',
+    State.OTHER: 'red',
     State.DUE: 'dim',
 }
 
@@ -87,5 +88,9 @@ def _runs(progress: Progress, runs: Iterable[Run]) -> RenderableType:
 
 
 def _failures(progress: Progress) -> RenderableType:
-    lines = [Text(f'{r.run_id} failed: {r.reason}') for r in progress.having(State.FAILED)]
-    return Group('', *lines) if lines else Group()
+    lines = [f'{r.run_id} failed: {r.reason}' for r in progress.having(State.FAILED)]
+    lines += [
+        f'{r.run_id} has the bag of another run: {r.reason}' for r in progress.having(State.OTHER)
+    ]
+    lines += [f'runs are not alike: {text}' for text in progress.mixed]
+    return Group('', *map(Text, lines)) if lines else Group()

@@ -6,9 +6,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+
+from hexapod_doe.bags.run_identity import odd_runs
 
 
 class State(StrEnum):
@@ -19,6 +21,8 @@ class State(StrEnum):
     RUNNING = 'running'
     INTERRUPTED = 'interrupted'
     """It was begun, and nobody works at it now."""
+    OTHER = 'other'
+    """The bag in its place is that of another run."""
     DUE = 'due'
 
 
@@ -41,8 +45,10 @@ class Run:
     """Wall time since its worker began it, or began it again, up to the last episode."""
     earlier: int = 0
     """Episodes that it already had then."""
+    settings: Mapping[str, str] = field(default_factory=dict)
+    """Its length and configuration, as its bag states them."""
     reason: str = ''
-    """Why it failed."""
+    """Why it failed, or how the run in its place differs from it."""
 
     @property
     def episodes_per_second(self) -> float:
@@ -72,6 +78,12 @@ class Progress:
     def having(self, *states: State) -> list[Run]:
         """Return the runs in any of these states."""
         return [run for run in self.runs.values() if run.state in states]
+
+    @property
+    def mixed(self) -> list[str]:
+        """In what runs differ that should have it in common: a line for each length or value."""
+        done = {run.run_id: run.settings for run in self.having(State.DONE)}
+        return list(odd_runs(done).values())
 
     @property
     def episodes(self) -> int:
