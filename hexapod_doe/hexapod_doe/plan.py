@@ -40,7 +40,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     try:
         _RUN[args.command](args)
     except (ValueError, OSError) as error:
-        sys.exit(f'plan: {error}')
+        print(f'plan: {error}', file=sys.stderr)
+        sys.exit(2)
 
 
 def _make(args: argparse.Namespace) -> None:

@@ -21,8 +21,11 @@ RESULTS = Topic('/w0/episode_result', 'hexapod_interfaces/msg/EpisodeResult')
 JOINTS = Topic('/w0/joint_states', 'sensor_msgs/msg/JointState')
 
 
-def serialised_result(episode: int, run_id: str = 'r1') -> bytes:
-    """Return the result of an episode that ends at (episode + 1) * 15 s."""
+def serialised_result(episode: int, run_id: str = 'r1', gain: float = 1.0) -> bytes:
+    """Return the result of an episode that ends at (episode + 1) * 15 s.
+
+    It returns 10 * episode * gain, and 5 * episode * gain on average so far.
+    """
     from hexapod_interfaces.msg import EpisodeResult
     from rclpy.serialization import serialize_message
 
@@ -30,8 +33,8 @@ def serialised_result(episode: int, run_id: str = 'r1') -> bytes:
         run_id=run_id,
         episode=episode,
         steps=600,
-        episode_return=float(10 * episode),
-        average_return=float(5 * episode),
+        episode_return=float(10 * episode * gain),
+        average_return=float(5 * episode * gain),
         term_names=['progress', 'effort'],
         term_values=array('d', [10.0 * episode + 1.0, -1.0]),
         cause='time limit',
@@ -54,7 +57,7 @@ def serialised_joints(stamp_ns: int) -> bytes:
     return serialize_message(message)
 
 
-def fill(writer: BagWriter, episodes: int, samples: int = 0) -> None:
+def fill(writer: BagWriter, episodes: int, samples: int = 0, gain: float = 1.0) -> None:
     """Write results, and before each of them some joint states."""
     writer.add_topic(JOINTS)
     writer.add_topic(RESULTS)
@@ -63,7 +66,7 @@ def fill(writer: BagWriter, episodes: int, samples: int = 0) -> None:
             stamp = episode * EPISODE_NS + k * PERIOD_NS
             writer.write(JOINTS.name, serialised_joints(stamp), stamp)
         end = (episode + 1) * EPISODE_NS
-        writer.write(RESULTS.name, serialised_result(episode), end)
+        writer.write(RESULTS.name, serialised_result(episode, gain=gain), end)
         writer.flush()
 
 
@@ -83,10 +86,16 @@ def samples() -> SimpleNamespace:
 def write_bag(tmp_path: Path) -> Callable[..., Path]:
     """Return a function that writes the bag of a complete run and returns its path."""
 
-    def write(name: str = 'r1', episodes: int = 3, samples: int = 4, **metadata: str) -> Path:
+    def write(
+        name: str = 'r1',
+        episodes: int = 3,
+        samples: int = 4,
+        gain: float = 1.0,
+        **metadata: str,
+    ) -> Path:
         described = {'run_id': 'r1', 'status': 'complete', 'episodes': str(episodes)}
         with BagWriter(tmp_path / name, described | metadata) as writer:
-            fill(writer, episodes, samples)
+            fill(writer, episodes, samples, gain)
         return tmp_path / name
 
     return write

@@ -21,7 +21,7 @@ from hexapod_agent.config import AgentConfig, ConfigError
 
 CONFIG = 'config'
 EPISODES = 'episodes'
-_MAKING = ('machine', 'device', 'git_commit')
+_MAKING = ('machine', 'processor', 'device', 'git_commit')
 _VERSION = 'version.'
 _WITHOUT_EFFECT = ('config.training.episodes', 'config.training.checkpoint_every')
 """The length is compared as such, and a run gives the same wherever its checkpoints are taken."""
@@ -40,9 +40,9 @@ def run_identity(metadata: Mapping[str, str]) -> dict[str, str]:
 
 
 def settings(metadata: Mapping[str, str]) -> dict[str, str]:
-    """Return what all runs of an experiment share: their length, and each value of their config."""
+    """Return what all runs of an experiment share: length, and each value of their config."""
     found = {EPISODES: metadata[EPISODES]} if EPISODES in metadata else {}
-    return found | _flat_config(metadata[CONFIG]) if CONFIG in metadata else found
+    return found | dict(_flat_config(metadata[CONFIG])) if CONFIG in metadata else found
 
 
 def making(metadata: Mapping[str, str]) -> dict[str, str]:
@@ -64,9 +64,7 @@ def differences(found: Mapping[str, str], expected: Mapping[str, str]) -> str:
     return '; '.join([*odd[:_NAMED_KEYS], *more])
 
 
-def odd_runs(
-    runs: Mapping[str, Mapping[str, str]], without: Sequence[str] = ()
-) -> dict[str, str]:
+def odd_runs(runs: Mapping[str, Mapping[str, str]], without: Sequence[str] = ()) -> dict[str, str]:
     """Return where runs differ among themselves: by key, which of them have which value.
 
     Args:
@@ -78,7 +76,9 @@ def odd_runs(
     for key in keys:
         if key in without or key.split('.')[0] in without:
             continue
-        values = {run: found.get(key, 'none') for run, found in runs.items() if _stated(key, found)}
+        values = {
+            run: found.get(key, 'none') for run, found in runs.items() if _stated(key, found)
+        }
         if len(set(values.values())) > 1:
             texts[key] = _shares(key, values)
     return texts
@@ -126,7 +126,9 @@ def _flat_config(text: str) -> Mapping[str, str]:
 
 def _flattened(values: Any, key: str) -> list[tuple[str, str]]:
     if isinstance(values, Mapping) and values:
-        return [pair for name, value in values.items() for pair in _flattened(value, f'{key}.{name}')]
+        return [
+            pair for name, value in values.items() for pair in _flattened(value, f'{key}.{name}')
+        ]
     if isinstance(values, (list, tuple)):
         values = list(values)
     return [(key, str(values))]

@@ -39,7 +39,6 @@ class Row:
     metadata: Mapping[str, str]
     """Every column of the row, for the bag."""
 
-
     @property
     def identity(self) -> dict[str, str]:
         """What the plan says of the run: its sensors and its seed."""

@@ -17,6 +17,8 @@ REQUIRED = (*_INTEGERS, 'run_id', 'observations')
 """Columns that every plan has, beside its factor columns."""
 _RUN_ID = r'[A-Za-z][A-Za-z0-9_]*'
 _SEED_LIMIT = 2**64
+_LISTS = ('blocks', 'confirms')
+"""Settings that JSON has as lists."""
 
 
 class PlanError(ValueError):
@@ -118,7 +120,7 @@ def _read_settings(path: Path) -> PlanSettings | None:
         mapping = json.loads(path.read_text(encoding='utf-8'))
         confirmation = mapping.pop('confirmation')
         return PlanSettings(
-            **{**mapping, 'blocks': tuple(mapping['blocks'])},
+            **{**mapping, **{name: tuple(mapping.get(name, ())) for name in _LISTS}},
             confirmation=Confirmation(
                 confirmation['runs'], confirmation['level'], tuple(confirmation['seeds'])
             ),

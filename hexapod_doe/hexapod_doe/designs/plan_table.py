@@ -82,10 +82,21 @@ def follow_up(plan: Plan, levels: np.ndarray, how: str, replicates: int, seed: i
         replicates=replicates,
         seed=seed,
         common_seeds=before is not None and before.common_seeds,
+        blocks=_kept_blocks(levels, plan.factors, before.blocks if before else ()),
         follows=how,
+        base=plan.fingerprint,
         confirmation=before.confirmation if before else Confirmation(),
     )
     return _plan(levels, settings, plan.rows)
+
+
+def _kept_blocks(levels: np.ndarray, factors: str, words: Sequence[str]) -> tuple[str, ...]:
+    """Return the block generators of a plan for added cases, none if they don't split these."""
+    try:
+        block_labels(levels, factors, words)
+    except ValueError:
+        return ()
+    return tuple(words)
 
 
 def _plan(levels: np.ndarray, settings: PlanSettings, before: pd.DataFrame | None = None) -> Plan:
@@ -101,12 +112,14 @@ def _plan(levels: np.ndarray, settings: PlanSettings, before: pd.DataFrame | Non
     replicate = np.repeat(np.arange(settings.replicates), len(levels))
     seeds, spare = _seeds(settings, len(levels), before, seed_rng)
     blocks = block_labels(levels, settings.factors, settings.blocks)[number]
+    if settings.block_column == 'block' and before is not None:  # another time, other blocks
+        blocks = blocks + (int(before['block'].max()) if 'block' in before else 1)
     columns: dict[str, Any] = {
         'StdOrder': first_row + np.arange(len(number)),
         'RunOrder': _run_order(blocks, order_rng),
         'case': first_case + number,
         'replicate': 1 + replicate,
-        **({'block': blocks} if settings.blocks else {}),
+        **({'block': blocks} if settings.block_column == 'block' else {}),
         'seed': seeds[replicate, number],
         'run_id': [
             f'case{first_case + c:02d}_rep{1 + r:02d}'

@@ -3,6 +3,7 @@
 
 """What a campaign's plan is: its table of runs, how it was made, how it will be confirmed."""
 
+import hashlib
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -53,12 +54,21 @@ class PlanSettings:
     blocks: tuple[str, ...] = ()
     follows: str = ''
     """What an augmenting plan adds to, and how; empty for a first plan."""
+    base: str = ''
+    """Fingerprint of the plan that it adds to, or whose choice it confirms; empty for none."""
+    confirms: tuple[str, ...] = ()
+    """The sets that its runs confirm; empty for a plan whose runs are fitted."""
     confirmation: Confirmation = field(default_factory=Confirmation)
 
     @property
     def block_column(self) -> str:
-        """The column that tells the blocks of its runs apart; empty if there are none."""
-        return 'block' if self.blocks else 'seed' if self.common_seeds else ''
+        """The column that tells the blocks of its runs apart; empty if there are none.
+
+        What follows another plan is run at another time: a block of its own, or several.
+        """
+        if self.blocks:
+            return 'block'
+        return 'seed' if self.common_seeds else 'block' if self.follows else ''
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain types, with the confirmation rule in words."""
@@ -82,6 +92,13 @@ class Plan:
     def factors(self) -> str:
         """The factor letters: the one-letter columns."""
         return ''.join(name for name in self.rows.columns if len(name) == 1)
+
+    @property
+    def fingerprint(self) -> str:
+        """What tells its runs from those of any other plan."""
+        columns = ['run_id', 'observations', 'seed']
+        text = self.rows.sort_values('StdOrder')[columns].to_csv(index=False, lineterminator='\n')
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
 
     @property
     def levels(self) -> np.ndarray:

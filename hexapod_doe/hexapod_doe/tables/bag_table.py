@@ -3,19 +3,21 @@
 
 """Reads a campaign's bags into tables of runs, one per design."""
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+import hashlib
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import pandas as pd
 from hexapod_agent.observation import CHANNELS, LETTERS
 
+from hexapod_doe.bags.run_identity import CONFIG, differences, making, odd_runs, settings
 from hexapod_doe.bags.run_record import RunRecord, find_bags, is_complete, read_run
 from hexapod_doe.campaigns.campaign import PLAN_FILE
 from hexapod_doe.designs.plan_file import read_plan
-from hexapod_doe.designs.plan_types import Confirmation, PlanSettings
+from hexapod_doe.designs.plan_types import Confirmation
 from hexapod_doe.errors import BagError, TableError
 from hexapod_doe.fitting.model import EMPTY_SET
+from hexapod_doe.tables.bag_groups import Group, Part, group_runs
 from hexapod_doe.tables.bag_response import DEFAULT_RESPONSE, response_of
 from hexapod_doe.tables.table import (
     BLOCK,
@@ -26,17 +28,9 @@ from hexapod_doe.tables.table import (
     build_rows,
 )
 
-_DESIGN_ROW = ('case', 'replicate', 'RunOrder')
-
-
-@dataclass
-class _Group:
-    """Bags of one design."""
-
-    title: str
-    design: str
-    blocks: str
-    bags: list[Path] = field(default_factory=list)
+_DESIGN_ROW = ('case', 'replicate')
+_NAMED = 3
+"""Keys in which runs differ that a message names."""
 
 
 def read_bags(
@@ -47,7 +41,8 @@ def read_bags(
 ) -> list[RunTable]:
     """Read all complete bags below some directories; each campaign is one table.
 
-    A campaign that follows another one (a foldover, added cases) joins it.
+    A campaign that follows another one (a foldover, added cases) joins it, whichever comes first.
+    Runs of a plan that confirms a choice are in no table, see `confirmation_runs`.
 
     Args:
         paths: Directories of campaigns or bags.
@@ -58,82 +53,106 @@ def read_bags(
 
     Raises:
         BagError: A directory is missing, a bag cannot be read or its metadata lack a key.
-        AnalysisError: There is no complete bag or no such response, or the runs cannot be
-            analysed.
+        AnalysisError: There is no complete bag or no such response, the runs differ in length or
+            configuration, or they cannot be analysed.
     """
     bags = [bag for path in paths for bag in find_bags(path)]
     complete = [bag for bag in bags if is_complete(bag)]
+    source = ', '.join(map(str, paths))
     if not complete:
-        raise TableError(f'{_names(paths)}: {len(bags)} bags, none of a complete run')
+        raise TableError(f'{source}: {len(bags)} bags, none of a complete run')
     skipped = len(bags) - len(complete)
-    caveats = (f'{skipped} bags of unfinished runs are left out.',) if skipped else ()
+    groups, confirming, found = group_runs(complete)
+    if not groups and confirming:
+        raise TableError(
+            f'{source}: runs that confirm a choice; give the folder of the campaign that was '
+            'chosen from, and these with --confirm'
+        )
+    if not groups:
+        raise TableError(f'{source}: no run to analyse. {" ".join(found)}')
+    unfinished = (f'{skipped} bags of unfinished runs are left out.',) if skipped else ()
     names = tuple(factors or LETTERS)
-    source = _names(paths)
-    return [_table(group, source, caveats, names, response, blocks) for group in _groups(complete)]
+    return [
+        _table(group, source, (*unfinished, *found), names, response, blocks) for group in groups
+    ]
 
 
 def plan_rule(paths: Sequence[Path]) -> Confirmation:
     """Return the confirmation rule of the first campaign's plan, or the default one."""
     for path in paths:
-        settings = _settings(path)
-        if settings is not None:
-            return settings.confirmation
+        plan = path / PLAN_FILE
+        found = read_plan(plan).settings if plan.is_file() else None
+        if found is not None:
+            return found.confirmation
     return Confirmation()
 
 
-def bag_responses(path: Path, response: str = DEFAULT_RESPONSE) -> dict[str, list[float]]:
-    """Return the responses of the complete runs below a directory, by their observations."""
+def bag_responses(
+    path: Path, response: str = DEFAULT_RESPONSE, like: Mapping[str, str] | None = None
+) -> dict[str, list[float]]:
+    """Return the responses of the complete runs below a directory, by their observations.
+
+    Args:
+        path: Directory of a campaign or of bags.
+        response: What a run is judged by, see `bag_response`.
+        like: Length and configuration that the runs must have; anything if None.
+
+    Raises:
+        BagError: A bag cannot be read, or its run has another length or configuration.
+    """
+    return _responses(
+        (read_run(bag) for bag in find_bags(path) if is_complete(bag)), response, like
+    )
+
+
+def confirmation_runs(
+    paths: Sequence[Path], response: str = DEFAULT_RESPONSE, like: Mapping[str, str] | None = None
+) -> dict[str, list[float]]:
+    """Return the responses of runs below some directories whose plan confirms a choice.
+
+    A set with runs yet to come is left out.
+
+    Raises:
+        BagError: A bag cannot be read, or its run has another length or configuration.
+    """
+    complete = [bag for path in paths for bag in find_bags(path) if is_complete(bag)]
+    runs = [run for part in group_runs(complete)[1] for run in _whole_sets(part)]
+    return _responses(runs, response, like)
+
+
+def _whole_sets(part: Part) -> list[RunRecord]:
+    """Return the runs of the sets of which every row is done."""
+    assert part.plan is not None  # it confirms
+    lacking = set(part.plan.rows['run_id']) - {run.run_id for run in part.runs}
+    rows = part.plan.rows.set_index('run_id')['observations']
+    open_sets = {rows[run_id] for run_id in lacking}
+    return [run for run in part.runs if run.metadata['observations'] not in open_sets]
+
+
+def _responses(
+    runs: Iterable[RunRecord], response: str, like: Mapping[str, str] | None
+) -> dict[str, list[float]]:
     responses: dict[str, list[float]] = {}
-    for bag in filter(is_complete, find_bags(path)):
-        run = read_run(bag)
+    for run in runs:
+        if odd := differences(settings(run.metadata), like or {}):
+            raise BagError(f'run {run.run_id} is not like the runs that it is to confirm: {odd}')
         label = ''.join(sorted(_known(run, 'observations'))) or EMPTY_SET
         responses.setdefault(label, []).append(response_of(run, response))
     return responses
 
 
-def _names(paths: Iterable[Path]) -> str:
-    return ', '.join(map(str, paths))
-
-
-def _campaign(bag: Path) -> Path | None:
-    """Return the campaign's directory: the nearest one above a bag that holds a plan."""
-    return next((parent for parent in bag.parents if (parent / PLAN_FILE).is_file()), None)
-
-
-def _settings(campaign: Path | None) -> PlanSettings | None:
-    if campaign is None or not (campaign / PLAN_FILE).is_file():
-        return None
-    return read_plan(campaign / PLAN_FILE).settings
-
-
-def _groups(bags: Iterable[Path]) -> list[_Group]:
-    by_campaign: dict[Path | None, list[Path]] = {}
-    for bag in bags:
-        by_campaign.setdefault(_campaign(bag.resolve()), []).append(bag)
-    groups: list[_Group] = []
-    for campaign, found in by_campaign.items():
-        settings = _settings(campaign)
-        if settings is None or not settings.follows or not groups:
-            title = campaign.name if campaign else found[0].parent.resolve().name
-            design, blocks = (settings.design, settings.block_column) if settings else ('', '')
-            groups.append(_Group(title, design, blocks))
-        elif settings is not None:
-            groups[-1].design = settings.design
-        groups[-1].bags += found
-    return groups
-
-
 def _table(
-    group: _Group,
+    group: Group,
     source: str,
     caveats: tuple[str, ...],
     factors: tuple[str, ...],
     response: str,
     blocks: str | None,
 ) -> RunTable:
-    runs = [read_run(bag) for bag in group.bags]
-    blocks = _planned_blocks(group, runs) if blocks is None else blocks
-    raw = pd.DataFrame([_row(run, factors, response, blocks) for run in runs])
+    runs = group.runs
+    blocks = _planned_blocks(group) if blocks is None else blocks
+    raw = pd.DataFrame(_rows(group, factors, response, blocks))
+    made = _check_alike(group, blocks)
     rows, found = build_rows(raw.dropna(axis=1), factors)
     return RunTable(
         title=group.title,
@@ -141,29 +160,102 @@ def _table(
         response=response,
         factors=factors,
         rows=rows,
-        caveats=(*caveats, *found),
-        design=group.design,
+        caveats=(*caveats, *made, *found),
+        design=group.settings.design if group.settings else '',
         block_column=blocks,
         factor_names={channel.letter: channel.name for channel in CHANNELS if channel.letter},
         curves=_curves(runs, rows),
+        settings=settings(runs[0].metadata),
     )
 
 
-def _planned_blocks(group: _Group, runs: Sequence[RunRecord]) -> str:
+def _check_alike(group: Group, blocks: str) -> tuple[str, ...]:
+    """Return a caveat on what some runs were made with, where that differs.
+
+    Raises:
+        TableError: Runs differ in length or configuration, and it is not taken for a block.
+    """
+    odd = odd_runs({run.run_id: settings(run.metadata) for run in group.runs}, without=[blocks])
+    if odd:
+        more = [f'and {len(odd) - _NAMED} more'] if len(odd) > _NAMED else []
+        told = '; '.join([*list(odd.values())[:_NAMED], *more])
+        key = next(iter(odd)).split('.')[0]
+        raise TableError(
+            f'{group.title}: its runs are not alike ({told}), '
+            'expected one length and configuration; give the bags of those that are, or take the '
+            f'difference as one between blocks with --blocks {key}'
+        )
+    made = odd_runs({run.run_id: making(run.metadata) for run in group.runs}, without=[blocks])
+    if not made:
+        return ()
+    return (
+        f'Runs were not made with the same: {"; ".join(made.values())}. Equal seeds then give '
+        'results that differ by chance.',
+    )
+
+
+def _planned_blocks(group: Group) -> str:
     """Return what the plan blocks the runs by, as far as those that there are allow it."""
-    sets = pd.Series([_known(run, 'observations') for run in runs])
-    block = pd.Series([run.metadata.get(group.blocks) for run in runs], dtype=object)
-    return '' if block_fault(sets, block) else group.blocks
+    column = group.settings.block_column if group.settings else ''
+    if not column:
+        return ''
+    sets = pd.Series([_known(run, 'observations') for run in group.runs])
+    block = pd.Series(_blocks(group, column), dtype=object)
+    return '' if block_fault(sets, block) else column
 
 
-def _row(run: RunRecord, factors: Sequence[str], response: str, blocks: str) -> dict[str, object]:
+def _blocks(group: Group, column: str) -> list[str | None]:
+    """Return the block of each run; those of plans that follow one another number on."""
+    if column != BLOCK or len(group.parts) == 1:
+        return [_block(run, column) for part in group.parts for run in part.runs]
+    return [
+        f'{number}.{run.metadata.get(BLOCK, 1)}'
+        for number, part in enumerate(group.parts, start=1)
+        for run in part.runs
+    ]
+
+
+def _block(run: RunRecord, column: str) -> str | None:
+    value = run.metadata.get(column)
+    if column == CONFIG and value is not None:  # a name for a long text
+        return hashlib.sha256(value.encode()).hexdigest()[:8]
+    return value
+
+
+def _rows(
+    group: Group, factors: Sequence[str], response: str, blocks: str
+) -> list[dict[str, object]]:
+    """Return a row for each run; plans that follow one another go on in run order and cases."""
+    runs = group.runs
+    labels = _blocks(group, blocks) if blocks else [None] * len(runs)
+    if blocks and None in labels:
+        _known(runs[labels.index(None)], blocks)
+    # Two plans that add to one number their cases alike: then the levels tell the cases.
+    known = _DESIGN_ROW[1:] if any('/' in run.run_id for run in runs) else _DESIGN_ROW
+    rows: list[dict[str, object]] = []
+    begun = 0
+    for part in group.parts:
+        own = [_row(run, factors, response, known) for run in runs[len(rows) :][: len(part.runs)]]
+        orders = [int(run.metadata.get('RunOrder', 0)) for run in part.runs]
+        rows += [
+            row | ({'RunOrder': begun + order} if order else {})
+            for row, order in zip(own, orders, strict=True)
+        ]
+        begun += max(orders, default=0)
+    return [
+        row | ({BLOCK: name} if blocks else {}) for row, name in zip(rows, labels, strict=True)
+    ]
+
+
+def _row(
+    run: RunRecord, factors: Sequence[str], response: str, known: Sequence[str]
+) -> dict[str, object]:
     letters = _known(run, 'observations')
     return {
         'run_id': run.run_id,
-        **{name: int(run.metadata[name]) for name in _DESIGN_ROW if run.metadata.get(name)},
+        **{name: int(run.metadata[name]) for name in known if run.metadata.get(name)},
         **{factor: 1 if factor in letters else -1 for factor in factors},
         RESPONSE: response_of(run, response),
-        **({BLOCK: _known(run, blocks)} if blocks else {}),
     }
 
 

@@ -39,6 +39,8 @@ class RunTable:
     curves: pd.DataFrame = field(default_factory=lambda: pd.DataFrame(columns=CURVE_COLUMNS))
     block_column: str = ''
     """What the blocks are of, such as `seed`; empty if the runs are in none."""
+    settings: Mapping[str, str] = field(default_factory=dict)
+    """Length and configuration of the runs, see `bags.run_identity`; empty for other tables."""
 
     @property
     def levels(self) -> pd.DataFrame:

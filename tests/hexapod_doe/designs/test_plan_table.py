@@ -93,6 +93,29 @@ def test_a_follow_up_of_common_seeds_goes_on_with_them():
     assert seeds[2] not in (*before, *plan.settings.confirmation.seeds)
 
 
+def test_a_fold_of_a_blocked_plan_has_blocks_of_its_own():
+    plan = make_plan(fraction('quarter'), blocks=['ACE'])
+    added = foldover(plan.levels, plan.factors, 'C')
+    further = follow_up(plan, added, 'foldover on C', replicates=1, seed=1)
+    assert further.settings.blocks == ('ACE',)
+    assert further.rows['block'].value_counts().to_dict() == {3: 16, 4: 16}
+    both = further.rows.groupby('block').apply(
+        lambda rows: (rows['A'] * rows['C'] * rows['E']).unique()
+    )
+    assert all(len(signs) == 1 for signs in both)
+
+
+def test_a_fold_of_a_plan_without_blocks_is_one_block():
+    plan = make_plan(fraction('half', 3))
+    assert 'block' not in plan.rows
+    added = foldover(plan.levels, plan.factors, 'C')
+    further = follow_up(plan, added, 'foldover on C', replicates=1, seed=1)
+    assert further.rows['block'].unique().tolist() == [2]
+    assert further.settings.base == plan.fingerprint
+    again = follow_up(further, added, 'foldover on C', replicates=1, seed=1)
+    assert again.rows['block'].unique().tolist() == [3]
+
+
 @pytest.mark.parametrize(
     ('call', 'message'),
     [

@@ -26,7 +26,7 @@ def campaign(tmp_path: Path, write_bag: WriteBag) -> Path:
     write_plan(plan, folder / 'plan.csv')
     for row in plan.rows.to_dict('records'):
         metadata = {str(key): str(value) for key, value in row.items()}
-        write_bag(f'tour/runs/{row["run_id"]}', episodes=1 + row['case'], samples=0, **metadata)
+        write_bag(f'tour/runs/{row["run_id"]}', samples=0, gain=row['case'], **metadata)
     return folder
 
 
@@ -38,22 +38,22 @@ def test_a_campaign_is_a_table(campaign: Path) -> None:
     rows = table.rows.set_index('case')
     assert rows.loc[16, 'label'] == 'ABCDEFG'
     assert rows.loc[1, 'label'] == '(none)'
-    # The bags of these tests hold episode e's average return as 5·e, case c has c + 1 episodes.
-    assert (rows['response'] == 5.0 * rows.index).all()
+    # The bags of these tests hold episode e's average return as 5·e·gain, up to episode 2.
+    assert (rows['response'] == 10.0 * rows.index).all()
 
 
 def test_learning_curves(campaign: Path) -> None:
     (table,) = read_bags([campaign])
     curve = table.curves[table.curves['case'] == 3]
-    assert curve['episode'].tolist() == [0, 1, 2, 3]
-    assert curve['return'].tolist() == [0.0, 10.0, 20.0, 30.0]
+    assert curve['episode'].tolist() == [0, 1, 2]
+    assert curve['return'].tolist() == [0.0, 30.0, 60.0]
 
 
 def test_a_run_is_judged_by_what_the_user_names(campaign: Path) -> None:
     (table,) = read_bags([campaign], response='mean_return')
     assert table.response == 'mean_return'
-    # Episode e returns 10·e: a run of episodes 0 to c has the mean 5·c.
-    assert (table.values == 5.0 * table.rows['case']).all()
+    # Episode e returns 10·e·gain: a run of episodes 0 to 2 has the mean 10·gain.
+    assert (table.values == 10.0 * table.rows['case']).all()
 
 
 def test_the_command_line_reads_a_campaign(
@@ -64,7 +64,7 @@ def test_the_command_line_reads_a_campaign(
     analysis = json.loads((tmp_path / 'out' / 'analysis.json').read_text())
     assert analysis['design']['name'] == 'eighth'
     assert analysis['options']['confirmation']['runs'] == 7
-    assert analysis['curves']['case03_rep01']['return'] == [0.0, 10.0, 20.0, 30.0]
+    assert analysis['curves']['case03_rep01']['return'] == [0.0, 30.0, 60.0]
     assert [step['name'] for step in analysis['steps']] == ['initial', 'reduced']
     assert analysis['purchase']['cheapest'] in analysis['ranking']
 
@@ -89,7 +89,7 @@ def test_the_plan_says_that_seeds_are_blocks(
     write_plan(plan, tmp_path / 'tour' / 'plan.csv')
     for row in plan.rows.to_dict('records'):
         metadata = {str(key): str(value) for key, value in row.items()}
-        write_bag(f'tour/runs/{row["run_id"]}', episodes=row['case'], samples=0, **metadata)
+        write_bag(f'tour/runs/{row["run_id"]}', gain=row['case'], samples=0, **metadata)
     (table,) = read_bags([tmp_path / 'tour'])
     assert table.block_column == column
     assert ('block' in table.rows) == bool(column)
@@ -112,7 +112,7 @@ def test_the_article_knows_no_blocks(
     write_plan(plan, tmp_path / 'tour' / 'plan.csv')
     for number, row in enumerate(plan.rows.to_dict('records')):
         metadata = {str(key): str(value) for key, value in row.items()}
-        write_bag(f'tour/runs/{row["run_id"]}', episodes=1 + number, samples=0, **metadata)
+        write_bag(f'tour/runs/{row["run_id"]}', gain=1 + number, samples=0, **metadata)
     source = [str(tmp_path / 'tour'), '--factors', 'A,B,C', '--terms', 'A,B']
     assert analyze.main([*source, *options, '--out', str(tmp_path / 'out')]) == 0
     analysis = json.loads((tmp_path / 'out' / 'analysis.json').read_text())
@@ -120,7 +120,7 @@ def test_the_article_knows_no_blocks(
 
 
 def test_unfinished_runs_are_left_out(campaign: Path, write_bag: WriteBag) -> None:
-    write_bag('tour/runs/late', episodes=1, samples=0, run_id='late', status='recording')
+    write_bag('tour/runs/late', samples=0, run_id='late', status='recording')
     (table,) = read_bags([campaign])
     assert len(table.rows) == 16
     assert table.caveats[0] == '1 bags of unfinished runs are left out.'
