@@ -25,9 +25,9 @@ from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Trigger
 
 from hexapod_doe.bags.bag_file import BagFile
+from hexapod_doe.bags.pauses import PauseTeller
 from hexapod_doe.bags.playback import Frame, Playback
 from hexapod_doe.bags.selection import Selection, select
-from hexapod_doe.bags.spans import duration_text
 from hexapod_doe.errors import BagError
 
 CLOCK_TOPIC = '/clock'
@@ -35,8 +35,6 @@ CLOCK_TYPE = 'rosgraph_msgs/msg/Clock'
 # Longest that the end of playback waits until its readers have everything.
 _DRAIN = Duration(seconds=5)
 _IDLE_NS = 3_600_000_000_000
-# A pause that is worth a word, so that nobody takes it for the end.
-_LONG_S = 10.0
 
 PARAMETERS = (
     Parameter('bag', '', 'Directory of the bag, or one .mcap file.'),
@@ -94,7 +92,7 @@ class PlayerNode(Node):
         if self._playback.finished:
             raise BagError(self._nothing())
         self._played = 0
-        self._told_ns: int | None = None
+        self._pauses = PauseTeller(self._playback, self._bag.start_ns, 'start:={:.3f}')
         self._now_ns = self._bag.start_ns
         self.create_service(Trigger, '~/pause', self._on_pause)
         self.create_service(Trigger, '~/resume', self._on_resume)
@@ -144,23 +142,10 @@ class PlayerNode(Node):
                 self.exit_status = 1
                 return
             wait_ns = self._playback.wait_ns(time.monotonic_ns())
-        self._tell_pause(wait_ns)
+        if notice := self._pauses.notice(wait_ns):
+            self.get_logger().warning(notice)
         self._timer.timer_period_ns = _IDLE_NS if wait_ns is None else max(1, wait_ns)
         self._timer.reset()
-
-    def _tell_pause(self, wait_ns: int | None) -> None:
-        """Say that nothing is due for long, or that recorded times jump, and where they go on."""
-        next_ns, jump = self._playback.next_ns, self._playback.jump
-        if next_ns is None or next_ns == self._told_ns:
-            return
-        after = f'start:={(next_ns - self._bag.start_ns) * 1e-9:.3f} begins after it'
-        if jump:
-            self.get_logger().warning(f'{jump}: passed over; {after}')
-        elif wait_ns is not None and wait_ns * 1e-9 > _LONG_S:
-            self.get_logger().warning(f'nothing is due for {duration_text(wait_ns)}; {after}')
-        else:
-            return
-        self._told_ns = next_ns
 
     def _publish(self, frame: Frame) -> None:
         for message in frame.messages:
@@ -171,8 +156,8 @@ class PlayerNode(Node):
         if self._playback.finished:
             for publisher in self._bag_publishers.values():
                 publisher.wait_for_all_acked(_DRAIN)
-            for topic, count in self._selection.skipped.items():
-                self.get_logger().warning(f'{topic}: {count} messages are no CDR, and not played')
+            for line in self._selection.skips():
+                self.get_logger().warning(line)
             self.get_logger().info(f'played {self._played} messages of {self._bag.path}')
             self.exit_status = 0
 

@@ -283,7 +283,7 @@ def test_a_long_pause_is_told(graph, tmp_path, capfd):
             writer.write('/joints', joints(stamp), stamp)
     player = add_player(graph, tmp_path / 'b', paused=False)
     graph.until(lambda: player._played == 1)
-    graph.until(lambda: player._told_ns is not None)
+    graph.until(lambda: player._pauses._told_ns is not None)
     assert 'nothing is due for 3.0 hours; start:=10800.000' in capfd.readouterr().err
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from hexapod_doe.bags.bag_file import RawMessage
-from hexapod_doe.bags.spans import duration_text
+from hexapod_doe.bags.durations import duration_text
 
 # No robot rests this long within a recording: clocks that were set, or stamps that were not.
 MOST_PAUSE_NS = 24 * 3600 * 1_000_000_000
@@ -54,6 +54,7 @@ class Playback:
         rate: float = 1.0,
         loop: bool = False,
         paused: bool = False,
+        begin_ns: int | None = None,
     ) -> None:
         """Begin before the first frame.
 
@@ -62,6 +63,7 @@ class Playback:
             rate: recorded seconds per second; 0 for as fast as possible.
             loop: begin again at the end.
             paused: hold until `resume` or `step`.
+            begin_ns: recorded time to begin at; None for that of the first frame.
         """
         self.paused = paused
         self.jump: Jump | None = None
@@ -72,6 +74,8 @@ class Playback:
         self._next = next(self._frames, None)
         # The recorded time that was, or will be, due at a time of the clock.
         self._recorded_ns = self._next.time_ns if self._next else 0
+        if begin_ns is not None and 0 <= self._recorded_ns - begin_ns <= MOST_PAUSE_NS:
+            self._recorded_ns = begin_ns
         self._anchor_ns: int | None = None
 
     @property

@@ -50,6 +50,13 @@ class Selection:
             for topic in self.unproven
         ]
 
+    def skips(self) -> list[str]:
+        """Return a line for each topic of which messages were left out."""
+        return [
+            f'{topic}: {count} messages are not serialised ones (CDR), and were not played'
+            for topic, count in self.skipped.items()
+        ]
+
 
 def select(bag: BagFile, names: Collection[str], importable: Callable[[str], object]) -> Selection:
     """Choose the topics of a bag that can be played.

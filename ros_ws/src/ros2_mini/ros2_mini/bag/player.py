@@ -4,24 +4,22 @@
 """Publish the messages of a bag at the pace at which they were recorded."""
 
 import time
-from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import partial
 
 import rclpy
+from hexapod_doe.bags.pauses import PauseTeller
+from hexapod_doe.bags.playback import Playback
+from hexapod_doe.bags.selection import Selection
+from hexapod_node.raw_topics import message_class, replay_qos
 from rclpy.duration import Duration
 from rclpy.node import Node
-from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
 from rosgraph_msgs.msg import Clock
 
-from ros2_mini.bag.messages import RecordedMessage, read_messages
-from ros2_mini.bag.metadata import BagMetadata, Topic
-from ros2_mini.bag.offers import replay_profile
-from ros2_mini.interfaces import load_type
-
-# How long a sleep may take no notice of a shutdown [s].
-_LONGEST_SLEEP = 0.1
+# How long a sleep may take no notice of a shutdown [ns].
+_LONGEST_SLEEP = 100_000_000
 _ACKNOWLEDGE_TIMEOUT = Duration(seconds=1.0)
 
 
@@ -38,46 +36,59 @@ class Pace:
 
 
 class Player:
-    """Publishes a bag through a node."""
+    """Publishes what was chosen of a bag through a node."""
 
-    def __init__(self, node: Node, bag: BagMetadata, topics: Iterable[Topic], pace: Pace) -> None:
-        self._bag = bag
+    def __init__(self, node: Node, selection: Selection, pace: Pace) -> None:
+        self._node = node
+        self._selection = selection
         self._pace = pace
-        self._begin = bag.start + round(pace.offset * 1e9)
-        self._publishers: dict[str, Publisher] = {
-            topic.name: node.create_publisher(
-                load_type(topic.type, 'msg'), topic.name, replay_profile(topic)
+        bag = selection.bag
+        self._begin = bag.start_ns + round(pace.offset * 1e9)
+        self._publishers = {
+            name: node.create_publisher(
+                message_class(bag.types[name]), name, replay_qos(bag.qos[name])
             )
-            for topic in topics
+            for name in selection.topics
         }
         clock_qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
         self._clock = node.create_publisher(Clock, '/clock', clock_qos) if pace.clock else None
-        self._next_tick = 0.0
+        self._next_tick = 0
 
     def play(self) -> None:
-        """Publish the bag once, or until the context is shut down."""
-        start = time.monotonic()
-        self._next_tick = start
-        for message in read_messages(self._bag, self._publishers, self._begin):
-            self._wait_until(self._due(message, start), start)
-            if not rclpy.ok():
-                return
-            self._publishers[message.topic].publish(message.data)
+        """Publish the bag once, or until the context is shut down.
+
+        Raises:
+            hexapod_doe.errors.BagError: the bag is damaged further on.
+        """
+        first = self._begin if self._pace.offset else None
+        playback = Playback(
+            partial(self._selection.messages, first), self._pace.rate, begin_ns=self._begin
+        )
+        teller = PauseTeller(playback, self._selection.bag.start_ns, '--start-offset {:.3f}')
+        now = self._next_tick = time.monotonic_ns()
+        while (wait := playback.wait_ns(now)) is not None and rclpy.ok():
+            if notice := teller.notice(wait):
+                self._node.get_logger().warning(notice)
+            self._tick(playback, now)
+            if wait == 0:
+                for message in playback.take().messages:
+                    self._publishers[message.topic].publish(message.data)
+            else:
+                self._sleep(wait, now)
+            now = time.monotonic_ns()
         for publisher in self._publishers.values():
             publisher.wait_for_all_acked(_ACKNOWLEDGE_TIMEOUT)
+        for line in self._selection.skips():
+            self._node.get_logger().warning(line)
 
-    def _due(self, message: RecordedMessage, start: float) -> float:
-        return start + (message.time - self._begin) * 1e-9 / self._pace.rate
+    def _tick(self, playback: Playback, now: int) -> None:
+        """Publish the recorded time if a tick is due."""
+        if self._clock is not None and self._next_tick <= now:
+            recorded = Time(nanoseconds=playback.recorded_ns(self._next_tick))
+            self._clock.publish(Clock(clock=recorded.to_msg()))
+            self._next_tick += round(1e9 / self._pace.clock)
 
-    def _wait_until(self, due: float, start: float) -> None:
-        while rclpy.ok():
-            now = time.monotonic()
-            if self._clock is not None and self._next_tick <= min(now, due):
-                recorded = self._begin + round((self._next_tick - start) * self._pace.rate * 1e9)
-                self._clock.publish(Clock(clock=Time(nanoseconds=recorded).to_msg()))
-                self._next_tick += 1.0 / self._pace.clock
-            elif now >= due:
-                return
-            else:
-                wake = min(due, self._next_tick) if self._clock is not None else due
-                time.sleep(min(_LONGEST_SLEEP, max(0.0, wake - now)))
+    def _sleep(self, wait: int, now: int) -> None:
+        """Sleep until the next frame or the next tick, and no longer than a shutdown may take."""
+        until_tick = wait if self._clock is None else max(0, self._next_tick - now)
+        time.sleep(min(_LONGEST_SLEEP, wait, until_tick) * 1e-9)

@@ -6,7 +6,7 @@
 import argparse
 from pathlib import Path
 
-from ros2_mini.bag.metadata import read_metadata, summary
+from ros2_mini.bag.summary import found, summary
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -20,10 +20,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Print the summary of a bag, or the names of its topics."""
-    bag = read_metadata(args.bag_path)
+    place, bag = found(args.bag_path)
     if args.topic_name:
         for topic in bag.topics:
             print(topic.name)
     else:
-        print(summary(bag))
+        print(summary(place, bag))
     return 0

@@ -13,9 +13,12 @@ import time
 from pathlib import Path
 
 import rclpy
+from hexapod_doe.bags.bag_file import BagFile
+from hexapod_doe.bags.selection import Selection, select
+from hexapod_doe.errors import BagError
+from hexapod_node.raw_topics import message_class
 from rclpy.node import Node
 
-from ros2_mini.bag.metadata import BagMetadata, Topic, read_metadata
 from ros2_mini.bag.player import Pace, Player
 from ros2_mini.discovery import DEFAULT_LIMIT, wait_until_settled
 from ros2_mini.errors import CommandError
@@ -73,33 +76,40 @@ def _positive(text: str) -> float:
 
 def main(args: argparse.Namespace) -> int:
     """Play a bag to its end, or until interrupted."""
-    bag = read_metadata(args.bag_path)
-    topics = _chosen(bag, args)
+    try:
+        _run(args)
+    except BagError as error:
+        raise CommandError(str(error)) from error
+    return 0
+
+
+def _run(args: argparse.Namespace) -> None:
+    bag = BagFile(args.bag_path)
+    selection = select(bag, _chosen(bag, args), message_class)
     remaps = [word for rule in args.remap for word in ('--remap', rule)]
     cli_args = ['--ros-args', *remaps] if remaps else []
     with (
         contextlib.suppress(KeyboardInterrupt, SystemExit),
         open_node(_NODE_NAME, cli_args=cli_args) as node,
     ):
-        _play(node, bag, topics, args)
-    return 0
+        _play(node, selection, args)
 
 
-def _chosen(bag: BagMetadata, args: argparse.Namespace) -> list[Topic]:
+def _chosen(bag: BagFile, args: argparse.Namespace) -> list[str]:
     """Return the topics to play; the recorded clock gives way to one of ours."""
-    known = {topic.name for topic in bag.topics}
     for name in args.topics or []:
-        if name not in known:
-            raise CommandError(
-                f"bag '{bag.directory}' has no topic '{name}'; it has: {', '.join(sorted(known))}"
-            )
+        if name not in bag.types:
+            known = ', '.join(sorted(bag.types))
+            raise CommandError(f"bag '{bag.path}' has no topic '{name}'; it has: {known}")
     left_out = {*args.exclude_topics, *([_CLOCK_TOPIC] if args.clock else [])}
-    wanted = set(args.topics or known) - left_out
-    return [topic for topic in bag.topics if topic.name in wanted]
+    wanted = set(args.topics or bag.types) - left_out
+    return [name for name in bag.types if name in wanted]
 
 
-def _play(node: Node, bag: BagMetadata, topics: list[Topic], args: argparse.Namespace) -> None:
-    player = Player(node, bag, topics, Pace(args.rate, args.start_offset, args.clock))
+def _play(node: Node, selection: Selection, args: argparse.Namespace) -> None:
+    for line in selection.warnings():
+        node.get_logger().warning(line)
+    player = Player(node, selection, Pace(args.rate, args.start_offset, args.clock))
     wait_until_settled(node, DEFAULT_LIMIT)
     while rclpy.ok():
         time.sleep(args.delay)

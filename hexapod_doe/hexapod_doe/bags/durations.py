@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Times as people say them."""
+"""Durations as people say them."""
 
 from __future__ import annotations
 
