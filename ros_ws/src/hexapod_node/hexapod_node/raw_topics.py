@@ -28,7 +28,7 @@ def message_class(type_name: str) -> type:
     package, _, name = type_name.partition('/msg/')
     try:
         return getattr(import_module(f'{package}.msg'), name)
-    except (ImportError, AttributeError, ValueError) as error:
+    except (ImportError, AttributeError, TypeError, ValueError) as error:
         raise ValueError(
             f"message type '{type_name}': not installed, expected <package>/msg/<Type> of a "
             'package in the environment'
