@@ -18,9 +18,9 @@ from hexapod_doe.choosing.estimands import estimand, pseudo_values
 from hexapod_doe.choosing.outlook import final_outlook
 from hexapod_doe.choosing.prediction import predict_all
 from hexapod_doe.errors import TableError
+from hexapod_doe.fitting.curvature import curvature
 from hexapod_doe.fitting.estimate import estimates
 from hexapod_doe.fitting.pipeline import Pipeline, run
-from hexapod_doe.fitting.pure_error import curvature
 from hexapod_doe.fitting.steps import aliases_of, main_effects, removals, step_record
 from hexapod_doe.tables.describe import design_caveats, failure_caveat, model_caveats, summarise
 from hexapod_doe.tables.table import RESPONSE, RunTable
@@ -124,7 +124,7 @@ def _modelled(table: RunTable, state: Pipeline, options: Options) -> Analysis:
         elimination=removals(state.dropped, aliases),
         transform=state.transform,
         lenth=state.lenth,
-        curvature=curvature(table.levels, table.values),
+        curvature=curvature(table.levels, table.values, table.all_blocks),
         level=options.level,
         predictions=predictions,
         ranking=ranking,

@@ -19,8 +19,9 @@ from hexapod_doe.analysis.findings import (
     TwoPart,
 )
 from hexapod_doe.fitting.blocks import BlockTest
+from hexapod_doe.fitting.curvature import Curvature
 from hexapod_doe.fitting.lenth import Lenth
-from hexapod_doe.fitting.pure_error import Curvature, LackOfFit
+from hexapod_doe.fitting.pure_error import LackOfFit
 from hexapod_doe.fitting.transform import Transform
 
 Interval = tuple[float | None, float | None]

@@ -17,8 +17,8 @@ import pandas as pd
 
 from hexapod_doe.analysis.findings import Attribution
 from hexapod_doe.choosing.prediction import rank_descending
-from hexapod_doe.designs.terms import CONSTANT, column, order, terms_up_to
-from hexapod_doe.fitting.model import corners, is_curvature, labels, model_matrix
+from hexapod_doe.designs.terms import CONSTANT, CURVATURE, column, order, terms_up_to
+from hexapod_doe.fitting.model import centre_points, corners, labels, model_matrix
 
 MAX_EXAMINED = 4096
 """More namings than this are sampled."""
@@ -33,10 +33,10 @@ def candidates(levels: pd.DataFrame, terms: Sequence[str]) -> Candidates:
     is less likely than the one that was named.
     """
     factors = ''.join(levels.columns)
-    cases = levels[(levels != 0).all(axis=1)].drop_duplicates().to_numpy(float)
+    cases = levels[~centre_points(levels)].drop_duplicates().to_numpy(float)
     found = {}
     for term in terms:
-        if term == CONSTANT or is_curvature(term, factors):
+        if term in (CONSTANT, CURVATURE):
             continue
         own = column(cases, factors, term)
         others = (

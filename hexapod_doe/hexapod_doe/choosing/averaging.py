@@ -21,7 +21,14 @@ from hexapod_doe.choosing.draws import interval_of
 from hexapod_doe.choosing.prediction import rank_descending
 from hexapod_doe.designs.terms import CONSTANT, order, terms_up_to
 from hexapod_doe.fitting.blocks import no_blocks, without_blocks
-from hexapod_doe.fitting.model import corners, estimable_terms, labels, model_matrix, parents
+from hexapod_doe.fitting.model import (
+    centre_points,
+    corners,
+    estimable_terms,
+    labels,
+    model_matrix,
+    parents,
+)
 from hexapod_doe.fitting.regression import ols
 
 P_MAIN = 0.5
@@ -42,8 +49,9 @@ class ModelSpace:
         self.terms = terms_up_to(self.factors, 2)
         matrix = model_matrix(levels, [CONSTANT, *self.terms])
         self.floor = 1e-12 * float(((response - response.mean()) ** 2).sum())
-        basis = no_blocks(len(response)) if blocks is None else blocks
-        response = without_blocks(response, basis)
+        basis = _absorbed(levels, no_blocks(len(response)) if blocks is None else blocks)
+        self.centre = float(response.mean())
+        response = without_blocks(response - self.centre, basis)
         q, self.r = linalg.qr(without_blocks(matrix, basis), mode='economic')
         self.rotated = q.T @ response
         rest = response - q @ self.rotated
@@ -85,7 +93,10 @@ class ModelSpace:
         return total
 
     def solve(self, active: np.ndarray) -> tuple[np.ndarray, float, np.ndarray]:
-        """Return coefficients, error sum of squares and R⁻¹ of a model with the constant."""
+        """Return coefficients, error sum of squares and R⁻¹ of a model with the constant.
+
+        The response is centred: the constant lacks `centre`.
+        """
         q, r = linalg.qr(self.r[:, np.concatenate([[True], active])], mode='economic')
         projected = q.T @ self.rotated
         rest = self.rotated - q @ projected
@@ -124,6 +135,17 @@ def average(
             draws.append(_draw(space, active, points, rng))
     eta = np.array(draws) + _block_error(levels, response, blocks, len(draws), rng)
     return _summarise(space, visited, spread(eta), labels(grid), level)
+
+
+def _absorbed(levels: pd.DataFrame, blocks: np.ndarray) -> np.ndarray:
+    """Return the basis of what every model has: blocks, and curvature at centre points.
+
+    Without the latter centre points would pull the corners, which alone are predicted, to them.
+    """
+    centre = centre_points(levels)
+    if not centre.any():
+        return blocks
+    return linalg.orth(np.column_stack([blocks, centre.astype(float)]))
 
 
 def _block_error(
@@ -174,7 +196,7 @@ def _draw(
     coef, sse, inverse = space.solve(active)
     s = np.sqrt(max(sse, space.floor) / rng.chisquare(space.rows - space.absorbed - len(coef)))
     drawn = coef + s * inverse @ rng.standard_normal(len(coef))
-    return points[:, np.concatenate([[True], active])] @ drawn
+    return space.centre + points[:, np.concatenate([[True], active])] @ drawn
 
 
 def _summarise(

@@ -29,7 +29,7 @@ def coefficient_draws(
     """
     s = np.sqrt(fit.sse / rng.chisquare(fit.df_error, draws))
     normal = rng.standard_normal((draws, len(fit.terms)))
-    coef = fit.coef + s[:, None] * (normal @ fit.r_inverse.T)
+    coef = fit.coef + s[:, None] * (normal @ fit.root.T)
     test = fit.blocks
     if test is None:
         return coef, s

@@ -157,5 +157,5 @@ def _alias_set(group: list[tuple[str, int]]) -> AliasSet:
     return AliasSet(tuple(term for term, _ in ordered), tuple(sign * first for _, sign in ordered))
 
 
-def _by_representative(group: AliasSet) -> tuple[int, str]:
+def _by_representative(group: AliasSet) -> tuple[bool, int, str]:
     return sort_key(group.representative)

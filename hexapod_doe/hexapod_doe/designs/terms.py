@@ -11,18 +11,31 @@ import numpy as np
 CONSTANT = '1'
 """The empty word: the constant of a model and the identity of a defining relation."""
 
+CURVATURE = 'curvature'
+"""The indicator of a centre point as a term. It repeats letters, so no product is called so."""
+
 LETTERS = 'ABCDEFGHJKLM'
 """Factor names for 2 to 12 factors; `I` is left out because it names the identity."""
 
 
+def letters(term: str) -> str:
+    """Return the factors that a term multiplies; none for the constant and for curvature."""
+    return '' if term in (CONSTANT, CURVATURE) else term
+
+
 def order(term: str) -> int:
-    """Return the number of factors in a term; 0 for the constant."""
-    return 0 if term == CONSTANT else len(term)
+    """Return the degree of a term: its factors, 0 for the constant, 2 for curvature."""
+    return 2 if term == CURVATURE else len(letters(term))
 
 
-def sort_key(term: str) -> tuple[int, str]:
-    """Return the key that sorts terms by order, then alphabetically."""
-    return order(term), term
+def is_interaction(term: str) -> bool:
+    """Tell whether a term is a product of two factors or more."""
+    return len(letters(term)) > 1
+
+
+def sort_key(term: str) -> tuple[bool, int, str]:
+    """Return the key that sorts terms by order, then alphabetically, curvature last."""
+    return term == CURVATURE, order(term), term
 
 
 def normalise(term: str, factors: str) -> str:
@@ -31,7 +44,7 @@ def normalise(term: str, factors: str) -> str:
     Raises:
         ValueError: The term has a letter twice, or one that is not a factor.
     """
-    if term == CONSTANT:
+    if term in (CONSTANT, CURVATURE):
         return term
     for letter in term:
         if letter not in factors:
@@ -56,7 +69,9 @@ def product(*words: str) -> str:
 
 def contains(outer: str, inner: str) -> bool:
     """Tell whether `inner` is a proper part of `outer`, as hierarchy sees it."""
-    return outer != inner and (inner == CONSTANT or set(inner) < set(outer))
+    if inner in (CONSTANT, CURVATURE):
+        return inner == CONSTANT != outer
+    return set(inner) < set(letters(outer))
 
 
 def terms_up_to(factors: str, max_order: int) -> list[str]:
@@ -73,7 +88,7 @@ def column(levels: np.ndarray, factors: str, term: str) -> np.ndarray:
     Args:
         levels: Coded levels. Shape: (..., len(factors)).
         factors: The letters of the last axis, in its order.
-        term: A word over these letters, or the constant.
+        term: A word over these letters, the constant, or curvature: 1 where a level is 0.
 
     Returns:
         Shape: (...).
@@ -84,6 +99,8 @@ def column(levels: np.ndarray, factors: str, term: str) -> np.ndarray:
     term = normalise(term, factors)
     if term == CONSTANT:
         return np.ones(np.shape(levels)[:-1])
+    if term == CURVATURE:
+        return (np.asarray(levels) == 0).any(axis=-1).astype(float)
     indices = [factors.index(letter) for letter in term]
     return np.prod(np.asarray(levels, dtype=float)[..., indices], axis=-1)
 

@@ -15,7 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from scipy import linalg, stats
+from scipy import linalg
+from statsmodels.regression.linear_model import OLS, RegressionResults
 
 
 @dataclass(frozen=True)
@@ -74,22 +75,19 @@ def without_blocks(values: np.ndarray, basis: np.ndarray) -> np.ndarray:
     return values - basis @ (basis.T @ values)
 
 
-def block_test(
-    sse: float, df_error: int, sse_without: float, df: int, rows: int
-) -> BlockTest | None:
+def block_test(result: RegressionResults, df: int) -> BlockTest | None:
     """Test the blocks; None where there is only one.
 
     Args:
-        sse: Error sum of squares of the model with its blocks.
-        df_error: Its degrees of freedom.
-        sse_without: Error sum of squares of the same terms without blocks.
-        df: Blocks less one.
-        rows: Runs in all.
+        result: The fit, whose last columns are the differences between blocks.
+        df: Blocks less one, the number of these columns.
     """
     if not df:
         return None
-    ss = max(sse_without - sse, 0.0)
-    if not df_error or sse <= 0:
-        return BlockTest(ss, df, None, None, rows / (df + 1))
-    f = (ss / df) / (sse / df_error)
-    return BlockTest(ss, df, f, float(stats.f.sf(f, df, df_error)), rows / (df + 1))
+    model = result.model
+    without = OLS(model.endog, model.exog[:, :-df], hasconst=True).fit()
+    ss, runs = max(float(without.ssr - result.ssr), 0.0), len(model.endog) / (df + 1)
+    if result.df_resid < 1 or result.ssr <= 0:
+        return BlockTest(ss, df, None, None, runs)
+    f, p, _ = result.compare_f_test(without)
+    return BlockTest(ss, df, float(f), float(p), runs)

@@ -8,11 +8,15 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from scipy import linalg, stats
+from statsmodels.regression.linear_model import RegressionResults
 
 from hexapod_doe.designs.terms import CONSTANT, contains, order, sort_key
-from hexapod_doe.fitting.blocks import no_blocks, without_blocks
-from hexapod_doe.fitting.model import independent_terms, model_matrix, parents, term_key
+from hexapod_doe.fitting.blocks import no_blocks
+from hexapod_doe.fitting.model import independent_terms, model_matrix, parents
+from hexapod_doe.fitting.regression import least_squares
+
+_ROUNDING = 1e-12
+"""A coefficient so small against the deviation of the response is none."""
 
 
 @dataclass(frozen=True)
@@ -26,36 +30,6 @@ class Dropped:
     r2_adj: float | None
 
 
-@dataclass(frozen=True)
-class _Reduced:
-    """A least-squares problem rotated onto the columns of its largest model."""
-
-    r: np.ndarray
-    rotated: np.ndarray
-    outside: float
-    """Sum of squares that no term of the largest model takes up."""
-    rows: int
-    absorbed: int
-    """Degrees of freedom that the blocks take."""
-    sst: float
-
-    def df_error(self, parameters: int) -> int:
-        """Return the degrees of freedom that a number of terms leaves."""
-        return self.rows - self.absorbed - parameters
-
-    def sse_and_p(self, columns: list[int]) -> tuple[float, np.ndarray]:
-        """Return the error sum of squares and the p-values of the model of some columns."""
-        q, r = linalg.qr(self.r[:, columns], mode='economic')
-        inverse = linalg.solve_triangular(r, np.eye(len(columns)))
-        projected = q.T @ self.rotated
-        rest = self.rotated - q @ projected
-        sse = self.outside + float(rest @ rest)
-        df = self.df_error(len(columns))
-        with np.errstate(divide='ignore', invalid='ignore'):
-            t = (inverse @ projected) / np.sqrt(sse / df * (inverse**2).sum(axis=1))
-        return sse, np.nan_to_num(2 * stats.t.sf(np.abs(t), df), nan=1.0)
-
-
 def with_parents(
     levels: pd.DataFrame, terms: Sequence[str], blocks: np.ndarray | None = None
 ) -> tuple[str, ...]:
@@ -67,7 +41,7 @@ def with_parents(
         wanted |= missing
         queue += missing
     added = sorted(wanted - set(terms), key=sort_key)
-    return tuple(sorted(independent_terms(levels, [*terms, *added], blocks), key=term_key))
+    return tuple(sorted(independent_terms(levels, [*terms, *added], blocks), key=sort_key))
 
 
 def eliminate(
@@ -97,30 +71,33 @@ def eliminate(
     Returns:
         The terms kept and the trace.
     """
-    kept = list(terms)
+    kept, terms = list(terms), list(terms)
     basis = no_blocks(len(levels)) if blocks is None else blocks
-    problem = _rotate(model_matrix(levels, kept), response, basis)
-    index = {term: position for position, term in enumerate(kept)}
-    sse, p = problem.sse_and_p([index[term] for term in kept])
+    matrix, centred = model_matrix(levels, kept), response - response.mean()
+
+    def fit() -> RegressionResults:
+        return least_squares(matrix[:, [terms.index(term) for term in kept]], centred, basis)
+
     trace: list[Dropped] = []
+    result = fit()
     while True:
         free = _droppable(kept, hierarchy, protected)
-        values = dict(zip(kept, p, strict=True))
+        values = dict(zip(kept, _p_values(result), strict=False))  # those of blocks follow
         if not free or max(values[term] for term in free) <= alpha:
             return tuple(kept), tuple(trace)
         worst = max(free, key=lambda term: (round(values[term], 12), order(term), term))
         kept.remove(worst)
-        sse, p = problem.sse_and_p([index[term] for term in kept])
-        trace.append(_dropped(worst, float(values[worst]), sse, len(kept), problem))
+        result = fit()
+        trace.append(_dropped(worst, values[worst], result))
 
 
-def _rotate(matrix: np.ndarray, response: np.ndarray, basis: np.ndarray) -> _Reduced:
-    q, r = linalg.qr(without_blocks(matrix, basis), mode='economic')
-    free = without_blocks(response, basis)
-    rotated = q.T @ free
-    rest = free - q @ rotated
-    sst = float(((response - response.mean()) ** 2).sum())
-    return _Reduced(r, rotated, float(rest @ rest), len(response), basis.shape[1], sst)
+def _p_values(result: RegressionResults) -> list[float]:
+    """Return the p-values; 1 for a coefficient that is only rounding."""
+    model = result.model
+    rounding = _ROUNDING * np.sqrt(result.centered_tss / len(model.endog))
+    with np.errstate(divide='ignore', invalid='ignore'):
+        found = np.nan_to_num(result.pvalues, nan=1.0)
+    return [float(p) for p in np.where(np.abs(result.params) <= rounding, 1.0, found)]
 
 
 def _droppable(
@@ -135,8 +112,12 @@ def _droppable(
     )
 
 
-def _dropped(term: str, p: float, sse: float, parameters: int, problem: _Reduced) -> Dropped:
-    df = problem.df_error(parameters)
-    r2 = 1 - sse / problem.sst if problem.sst > 0 else None
-    adjusted = None if r2 is None else 1 - (sse / df) / (problem.sst / (problem.rows - 1))
-    return Dropped(term, p, float(np.sqrt(sse / df)), r2, adjusted)
+def _dropped(term: str, p: float, result: RegressionResults) -> Dropped:
+    varies = result.centered_tss > 0
+    return Dropped(
+        term,
+        p,
+        float(np.sqrt(result.mse_resid)),
+        float(result.rsquared) if varies else None,
+        float(result.rsquared_adj) if varies else None,
+    )

@@ -5,7 +5,7 @@
 
 Columns are built here and not by a formula language, which would hide a factor named ``C`` and
 split aliased columns without a word. Levels are a data frame with one column per factor: −1 or
-+1, or 0 in a whole row for a centre point.
++1, and at a centre point 0 for every numeric factor, while switches stay at −1 or +1.
 """
 
 from collections.abc import Iterable, Sequence
@@ -15,14 +15,21 @@ import pandas as pd
 
 from hexapod_doe.designs import terms as words
 from hexapod_doe.designs.aliases import alias_text
-from hexapod_doe.designs.terms import CONSTANT, letters_on, normalise, order, sort_key, terms_up_to
+from hexapod_doe.designs.terms import (
+    CONSTANT,
+    CURVATURE,
+    is_interaction,
+    letters_on,
+    normalise,
+    order,
+    sort_key,
+    terms_up_to,
+)
 from hexapod_doe.errors import AnalysisError
 from hexapod_doe.fitting.blocks import no_blocks
 
-CURVATURE = 'CP'
-"""The indicator of a centre point as a term of the model."""
-
 EMPTY_SET = '(none)'
+CENTRE = 'centre'
 _TOLERANCE = 1e-9
 
 
@@ -30,14 +37,9 @@ class AliasedTermsError(AnalysisError):
     """Terms of one model whose columns the runs cannot tell apart."""
 
 
-def is_curvature(term: str, factors: Iterable[str]) -> bool:
-    """Tell whether `CP` means the centre points, not the product of factors C and P."""
-    return term == CURVATURE and not set(CURVATURE) <= set(factors)
-
-
-def term_key(term: str) -> tuple[bool, int, str]:
-    """Return the key that sorts terms as printed: by order, then alphabet, curvature last."""
-    return (term == CURVATURE, *sort_key(term))
+def centre_points(levels: pd.DataFrame) -> np.ndarray:
+    """Tell which rows are centre points: those with a factor at 0 (n,)."""
+    return levels.eq(0).any(axis=1).to_numpy()
 
 
 def parse_terms(text: str, factors: Sequence[str]) -> tuple[str, ...]:
@@ -51,32 +53,22 @@ def parse_terms(text: str, factors: Sequence[str]) -> tuple[str, ...]:
         raise AnalysisError(f'terms {text!r}: no term named, expected a list such as A,B,AB')
     letters = ''.join(factors)
     try:
-        terms = {
-            part if is_curvature(part, factors) else normalise(part, letters) for part in parts
-        }
+        terms = {normalise(part, letters) for part in parts}
     except ValueError as error:
         raise AnalysisError(str(error)) from error
-    return tuple(sorted(terms | {CONSTANT}, key=term_key))
+    return tuple(sorted(terms | {CONSTANT}, key=sort_key))
 
 
 def parents(term: str) -> tuple[str, ...]:
     """Return the terms that hierarchy demands with `term`: all its factors but one, each way."""
-    if term == CURVATURE or order(term) < 2:
+    if not is_interaction(term):
         return ()
     return tuple(term.replace(letter, '') for letter in term)
 
 
 def model_matrix(levels: pd.DataFrame, terms: Iterable[str]) -> np.ndarray:
     """Return the coded columns of the terms. Shape: (rows, terms)."""
-    factors, values = ''.join(levels.columns), levels.to_numpy(float)
-    return np.column_stack(
-        [
-            (values == 0).all(axis=1).astype(float)
-            if is_curvature(term, factors)
-            else words.column(values, factors, term)
-            for term in terms
-        ]
-    )
+    return words.model_matrix(levels.to_numpy(float), ''.join(levels.columns), tuple(terms))
 
 
 def corners(factors: Sequence[str]) -> pd.DataFrame:
@@ -86,9 +78,17 @@ def corners(factors: Sequence[str]) -> pd.DataFrame:
 
 
 def labels(levels: pd.DataFrame) -> list[str]:
-    """Name each row by its factors at +1, for example ``ABCDE``; ``(none)`` where none is."""
+    """Name each row by its factors at +1, such as ``ABCDE``; ``(none)`` where none is.
+
+    Centre points are called ``centre``, and ``centre D`` with the switch D at +1.
+    """
     factors = ''.join(levels.columns)
-    return [letters_on(row, factors) or EMPTY_SET for row in levels.to_numpy(float)]
+    return [
+        f'{CENTRE} {letters_on(row, factors)}'.strip()
+        if (row == 0).any()
+        else letters_on(row, factors) or EMPTY_SET
+        for row in levels.to_numpy(float)
+    ]
 
 
 def independent_terms(
@@ -166,9 +166,9 @@ def estimable_terms(
     """
     factors = ''.join(levels.columns)
     wanted = [CONSTANT, *terms_up_to(factors, min(max_order or len(factors), len(factors)))]
-    if (levels == 0).all(axis=1).any() and is_curvature(CURVATURE, factors):
+    if centre_points(levels).any():
         wanted.insert(1, CURVATURE)
-    return tuple(sorted(independent_terms(levels, wanted, blocks), key=term_key))
+    return tuple(sorted(independent_terms(levels, wanted, blocks), key=sort_key))
 
 
 def alias_strings(levels: pd.DataFrame, terms: Iterable[str]) -> dict[str, str]:
@@ -177,10 +177,10 @@ def alias_strings(levels: pd.DataFrame, terms: Iterable[str]) -> dict[str, str]:
     Aliases up to the term's own order (two at least) are shown; centre points don't count.
     """
     factors = ''.join(levels.columns)
-    cases = levels[(levels != 0).all(axis=1)].drop_duplicates().to_numpy(float)
+    cases = levels[~centre_points(levels)].drop_duplicates().to_numpy(float)
     return {
         term: term
-        if term == CONSTANT or is_curvature(term, factors)
+        if term in (CONSTANT, CURVATURE)
         else alias_text(term, cases, factors, max(2, order(term)))
         for term in terms
     }

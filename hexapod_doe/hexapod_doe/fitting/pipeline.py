@@ -9,11 +9,11 @@ import numpy as np
 import pandas as pd
 
 from hexapod_doe.analysis.options import Options
-from hexapod_doe.designs.terms import CONSTANT, order
+from hexapod_doe.designs.terms import CONSTANT, CURVATURE, is_interaction, order
 from hexapod_doe.errors import TableError
 from hexapod_doe.fitting.elimination import Dropped, eliminate, with_parents
 from hexapod_doe.fitting.lenth import Lenth, lenth
-from hexapod_doe.fitting.model import CURVATURE, estimable_terms, model_matrix, parse_terms
+from hexapod_doe.fitting.model import estimable_terms, model_matrix, parse_terms
 from hexapod_doe.fitting.regression import Fit, ols
 from hexapod_doe.fitting.transform import Transform, choose_transform
 from hexapod_doe.tables.table import RESPONSE, RunTable
@@ -116,7 +116,8 @@ def _initial(state: Pipeline) -> None:
     state.fit('initial', description, terms)
     if not table.rows.duplicated('case').any() and state.last.df_error == 0:
         effects = dict(zip(terms, 2 * state.last.coef, strict=True))
-        effects.pop(CONSTANT)
+        for term in (CONSTANT, CURVATURE):  # neither is a contrast of the factorial runs
+            effects.pop(term, None)
         state.lenth = lenth(effects, options.alpha) if len(effects) > 2 else None
 
 
@@ -141,7 +142,7 @@ def _trim(state: Pipeline) -> None:
 def _reduce(state: Pipeline) -> None:
     """Replace a saturated model, which leaves no error, by main effects and what stands out."""
     saturated = state.last.terms
-    mains = tuple(term for term in saturated if order(term) <= 1 and term != CURVATURE)
+    mains = tuple(term for term in saturated if not is_interaction(term))
     beyond = () if state.lenth is None else state.lenth.clearly_active
     wanted = tuple(dict.fromkeys((*mains, *beyond)))
     terms = with_parents(state.levels, wanted, state.blocks)
@@ -152,7 +153,7 @@ def _reduce(state: Pipeline) -> None:
             'The model has as many terms as there are runs: no standard error, no interval.'
         )
         return
-    active = [term for term in terms if order(term) > 1]
+    active = [term for term in terms if is_interaction(term)]
     names = f' and {", ".join(active)}' if active else ''
     state.caveats.append(
         f'The model of all {len(saturated)} terms takes up every run and leaves no error; '

@@ -1,9 +1,9 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Ordinary least squares on a coded matrix, by QR, with the diagnostics of a designed experiment.
+"""Ordinary least squares on a coded matrix: statsmodels' fit with what designed experiments ask.
 
-X'X is never formed: after a power transform responses reach 1e6 and their squares 1e13.
+The response is centred before the fit, so that an offset costs no digits.
 Formulas: Montgomery, Design and Analysis of Experiments, 8th ed., sections 6.2–6.8 and 10.
 """
 
@@ -13,28 +13,35 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 from scipy import linalg, stats
+from statsmodels.regression.linear_model import OLS, RegressionResults
+from statsmodels.stats.outliers_influence import OLSInfluence
 
+from hexapod_doe.designs.terms import CONSTANT
 from hexapod_doe.errors import AnalysisError
-from hexapod_doe.fitting.blocks import BlockTest, block_test, no_blocks, without_blocks
+from hexapod_doe.fitting.blocks import BlockTest, block_test, no_blocks
 from hexapod_doe.fitting.model import check_rank, model_matrix
 from hexapod_doe.fitting.pure_error import LackOfFit, lack_of_fit
 
 _SATURATED = 1e-9
+_LARGEST = 1e140
+_LEAST_STEPS = 1000
+"""A response must span so many steps of its floating point numbers."""
 
 
 @dataclass(frozen=True)
 class Fit:
     """A least-squares fit; what does not exist (say, s of a saturated fit) is None.
 
-    Arrays follow `terms` (p) or the rows (n). `r_inverse` (p, p) holds R⁻¹ of X = QR, so that
-    Cov(b) = s² R⁻¹R⁻ᵀ; differences between blocks are projected out of X before. `press_cases`
-    leaves out all runs of a case at once: it is the honest one for combinations that were never
-    run.
+    Arrays follow `terms` (p) or the rows (n). `result` is the fit of the centred response on the
+    columns of the terms, then those of the differences between blocks; `root` (p, p) is a root of
+    the terms' part of (X'X)⁻¹, so that Cov(b) = s²·root·rootᵀ. `press_cases` leaves out all runs
+    of a case at once: it is the honest one for combinations that were never run.
     """
 
     terms: tuple[str, ...]
+    result: RegressionResults
     coef: np.ndarray
-    r_inverse: np.ndarray
+    root: np.ndarray
     fitted: np.ndarray
     residuals: np.ndarray
     leverage: np.ndarray
@@ -58,12 +65,12 @@ class Fit:
     @property
     def s(self) -> float | None:
         """Residual standard deviation."""
-        return float(np.sqrt(self.sse / self.df_error)) if self.df_error else None
+        return float(np.sqrt(self.result.mse_resid)) if self.df_error else None
 
     @property
     def se(self) -> np.ndarray | None:
         """Standard errors of the coefficients."""
-        return None if self.s is None else self.s * np.sqrt((self.r_inverse**2).sum(axis=1))
+        return self._of_terms(self.result.bse) if self.df_error else None
 
     @property
     def t(self) -> np.ndarray | None:
@@ -81,14 +88,21 @@ class Fit:
     @property
     def r2(self) -> float | None:
         """Share of the total sum of squares that the model takes up."""
-        return 1 - self.sse / self.sst if self.sst > 0 else None
+        return float(self.result.rsquared) if self.sst > 0 else None
 
     @property
     def r2_adj(self) -> float | None:
         """R² adjusted for the number of terms."""
-        if not self.df_error or self.sst <= 0:
-            return None
-        return 1 - (self.sse / self.df_error) / (self.sst / (self.n - 1))
+        return float(self.result.rsquared_adj) if self.df_error and self.sst > 0 else None
+
+    @property
+    def studentized(self) -> np.ndarray:
+        """Externally studentised residuals: eᵢ/(s₍ᵢ₎√(1−hᵢ)), s₍ᵢ₎ without row i; NaN if none."""
+        if self.df_error < 2:
+            return np.full(self.n, np.nan)
+        with np.errstate(divide='ignore', invalid='ignore'):
+            internal = OLSInfluence(self.result).resid_studentized_internal
+            return internal * np.sqrt((self.df_error - 1) / (self.df_error - internal**2))
 
     @property
     def r2_pred(self) -> float | None:
@@ -112,11 +126,14 @@ class Fit:
             raise AnalysisError(
                 'a saturated fit has no error to give its coefficients a covariance'
             )
-        return self.s**2 * self.r_inverse @ self.r_inverse.T
+        return self.s**2 * self.root @ self.root.T
 
     def unscaled_variance(self, points: np.ndarray) -> np.ndarray:
         """Return q = x₀'(X'X)⁻¹x₀ for each row x₀ of `points` (m, p)."""
-        return ((points @ self.r_inverse) ** 2).sum(axis=1)
+        return ((points @ self.root) ** 2).sum(axis=1)
+
+    def _of_terms(self, values: np.ndarray) -> np.ndarray:
+        return np.asarray(values)[: len(self.terms)]
 
 
 def ols(
@@ -135,44 +152,72 @@ def ols(
 
     Raises:
         AliasedTermsError: the runs cannot tell the terms apart, or from the blocks.
-        AnalysisError: there are fewer rows than terms.
+        AnalysisError: there are fewer rows than terms, or the response has no digits left to fit.
     """
     basis = no_blocks(len(levels)) if blocks is None else blocks
     check_rank(levels, terms, basis)
-    matrix = model_matrix(levels, terms)
-    if len(matrix) < len(terms) + basis.shape[1]:
-        raise AnalysisError(f'{len(terms)} terms need as many runs, the table has {len(matrix)}')
-    q, r = linalg.qr(without_blocks(matrix, basis), mode='economic')
-    r_inverse = linalg.solve_triangular(r, np.eye(len(r)))
-    whole = np.column_stack([basis, q])
-    fitted = whole @ (whole.T @ response)
-    residuals = response - fitted
-    leverage = (whole**2).sum(axis=1)
+    check_digits(response)
+    matrix, size = model_matrix(levels, terms), len(terms)
+    if len(matrix) < size + basis.shape[1]:
+        raise AnalysisError(f'{size} terms need as many runs, the table has {len(matrix)}')
+    centre = float(response.mean()) if CONSTANT in terms else 0.0
+    result = least_squares(matrix, response - centre, basis)
     cases = levels.groupby(list(levels.columns), sort=False).ngroup().to_numpy()
-    sse = float(residuals @ residuals)
+    coef = np.array(result.params[:size])
+    if CONSTANT in terms:
+        coef[list(terms).index(CONSTANT)] += centre
+    leverage = OLSInfluence(result).hat_matrix_diag
+    _check_explained(result)
     return Fit(
         terms=tuple(terms),
-        coef=r_inverse @ (q.T @ response),
-        r_inverse=r_inverse,
-        fitted=fitted,
-        residuals=residuals,
+        result=result,
+        coef=coef,
+        root=np.linalg.cholesky(result.normalized_cov_params[:size, :size]),
+        fitted=result.fittedvalues + centre,
+        residuals=result.resid,
         leverage=leverage,
-        sse=sse,
+        sse=float(result.ssr),
         sst=float(((response - response.mean()) ** 2).sum()),
-        press=_press(residuals, leverage),
-        press_cases=_press_cases(residuals, whole, cases),
-        lack_of_fit=lack_of_fit(sse, response, cases, len(terms), basis),
-        blocks=_block_test(matrix, response, basis, sse),
+        press=_press(result.resid, leverage),
+        press_cases=_press_cases(result, cases),
+        lack_of_fit=lack_of_fit(result, cases, size, basis),
+        blocks=block_test(result, basis.shape[1]),
     )
 
 
-def _block_test(
-    matrix: np.ndarray, response: np.ndarray, basis: np.ndarray, sse: float
-) -> BlockTest | None:
-    q = linalg.qr(matrix, mode='economic')[0]
-    rest = response - q @ (q.T @ response)
-    rows, df = len(matrix), basis.shape[1]
-    return block_test(sse, rows - matrix.shape[1] - df, float(rest @ rest), df, rows)
+def least_squares(
+    matrix: np.ndarray, response: np.ndarray, blocks: np.ndarray
+) -> RegressionResults:
+    """Return statsmodels' fit of a centred response on a model matrix and blocks (n, b)."""
+    return OLS(response, np.column_stack([matrix, blocks]), hasconst=True).fit()
+
+
+def check_digits(response: np.ndarray) -> None:
+    """Refuse a response that differs only in its last digits, or whose squares overflow.
+
+    Raises:
+        AnalysisError: Its span is a few steps of its floating point numbers, or no such number.
+    """
+    with np.errstate(over='ignore'):
+        span, step = np.ptp(response), np.spacing(np.abs(response).max())
+    if not span < _LARGEST or 0 < span < 1 / _LARGEST:
+        raise AnalysisError(
+            f'the response spans {span:.2g}, whose square is beyond floating point numbers: give '
+            'it in another unit, or choose another transform'
+        )
+    if 0 < span < _LEAST_STEPS * step:
+        raise AnalysisError(
+            f'the response differs by {span:.2g} around {response.mean():.6g}, which numbers of '
+            '16 digits do not resolve: subtract a constant from it, or choose another transform'
+        )
+
+
+def _check_explained(result: RegressionResults) -> None:
+    if result.ssr > result.centered_tss * (1 + 1e-6):
+        raise AnalysisError(
+            f'the fit explains less than the mean (R² = {result.rsquared:.2g}): the numbers lost '
+            'their digits; rescale the response, or choose another transform'
+        )
 
 
 def _press(residuals: np.ndarray, leverage: np.ndarray) -> float | None:
@@ -182,12 +227,12 @@ def _press(residuals: np.ndarray, leverage: np.ndarray) -> float | None:
     return float(((residuals / (1 - leverage)) ** 2).sum())
 
 
-def _press_cases(residuals: np.ndarray, q: np.ndarray, cases: np.ndarray) -> float | None:
+def _press_cases(result: RegressionResults, cases: np.ndarray) -> float | None:
     """Return PRESS leaving out all rows of a case at once.
 
     The deleted residuals of rows c are (I − H)⁻¹e with their block H = QQ' of the hat matrix.
     """
-    total = 0.0
+    q, residuals, total = linalg.qr(result.model.exog, mode='economic')[0], result.resid, 0.0
     for number in range(cases.max() + 1):
         rows = np.flatnonzero(cases == number)
         values, vectors = linalg.eigh(q[rows] @ q[rows].T)

@@ -13,7 +13,6 @@ from hexapod_doe.designs.terms import CONSTANT
 from hexapod_doe.fitting.elimination import Dropped
 from hexapod_doe.fitting.model import alias_strings
 from hexapod_doe.fitting.pipeline import FittedStep
-from hexapod_doe.fitting.regression import Fit
 from hexapod_doe.tables.table import RunTable
 
 
@@ -52,19 +51,8 @@ def step_record(step: FittedStep, aliases: Mapping[str, str]) -> Step:
         fitted=_tuple(fit.fitted),
         residuals=_tuple(fit.residuals),
         leverage=_tuple(fit.leverage),
-        studentized=studentized(fit),
+        studentized=tuple(_number(value) for value in fit.studentized),
     )
-
-
-def studentized(fit: Fit) -> tuple[float | None, ...]:
-    """Return externally studentised residuals: eᵢ/(s₍ᵢ₎√(1−hᵢ)), s₍ᵢ₎ without row i."""
-    if fit.df_error < 2:
-        return (None,) * fit.n
-    free = 1 - fit.leverage
-    with np.errstate(divide='ignore', invalid='ignore'):
-        without = (fit.sse - fit.residuals**2 / free) / (fit.df_error - 1)
-        values = fit.residuals / np.sqrt(without * free)
-    return tuple(_number(value) for value in values)
 
 
 def removals(dropped: Sequence[Dropped], aliases: Mapping[str, str]) -> tuple[Removal, ...]:

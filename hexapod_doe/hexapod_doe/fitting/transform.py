@@ -32,13 +32,19 @@ class ShiftSensitivity:
 
 @dataclass(frozen=True)
 class Transform:
-    """y ↦ ((y + shift)^λ − 1)/λ, or ln(y + shift) for λ = 0."""
+    """y ↦ g + (z^λ − g^λ)/(λ·g^(λ−1)), or g + g·ln(z/g) for λ = 0; z = y + shift.
+
+    g is the geometric mean of z: near it the transformed response keeps its unit and its digits,
+    whatever λ is.
+    """
 
     kind: str
     """`log`, `boxcox` or `power`."""
     lambda_: float
     shift: float
     shift_rule: str
+    scale: float = 1.0
+    """g, the geometric mean of the shifted response of the fitted rows."""
     lambda_hat: float | None = None
     """Where the likelihood is highest; λ is this rounded to a half."""
     lambda_ci: tuple[float, float] | None = None
@@ -47,31 +53,36 @@ class Transform:
 
     def forward(self, response: np.ndarray) -> np.ndarray:
         """Return the transformed response."""
-        return special.boxcox(np.asarray(response, float) + self.shift, self.lambda_)
+        ratio = (np.asarray(response, float) + self.shift) / self.scale
+        with np.errstate(over='ignore'):
+            return self.scale * (1 + special.boxcox(ratio, self.lambda_))
 
     def inverse(self, transformed: np.ndarray) -> np.ndarray:
-        """Return original units; NaN below the transform's domain, where λη + 1 ≤ 0."""
-        eta = np.asarray(transformed, float)
+        """Return original units; NaN below the transform's domain, where no response leads."""
+        eta = np.asarray(transformed, float) / self.scale - 1
         if self.lambda_ == 0:
-            return np.exp(eta) - self.shift
-        base = self.lambda_ * eta + 1
-        with np.errstate(invalid='ignore', divide='ignore'):
-            return np.where(base > 0, base ** (1 / self.lambda_), np.nan) - self.shift
+            return self.scale * np.exp(eta) - self.shift
+        with np.errstate(invalid='ignore', divide='ignore', over='ignore'):
+            ratio = np.where(self._base(eta) > 0, special.inv_boxcox(eta, self.lambda_), np.nan)
+        return self.scale * ratio - self.shift
 
     def slope(self, transformed: np.ndarray) -> np.ndarray:
         """Return g'(η) of the way back, by which the delta method scales a standard error."""
-        eta = np.asarray(transformed, float)
+        eta = np.asarray(transformed, float) / self.scale - 1
         if self.lambda_ == 0:
             return np.exp(eta)
-        return (self.lambda_ * eta + 1) ** (1 / self.lambda_ - 1)
+        return self._base(eta) ** (1 / self.lambda_ - 1)
 
     def mean(self, transformed: np.ndarray, s: float) -> np.ndarray:
         """Return the mean in original units, to second order: g(η) + g''(η)s²/2."""
-        eta = np.asarray(transformed, float)
+        eta, s = np.asarray(transformed, float) / self.scale - 1, s / self.scale
         if self.lambda_ == 0:
-            return np.exp(eta + s**2 / 2) - self.shift
-        second = (1 - self.lambda_) * (self.lambda_ * eta + 1) ** (1 / self.lambda_ - 2)
-        return self.inverse(eta) + second * s**2 / 2
+            return self.scale * np.exp(eta + s**2 / 2) - self.shift
+        second = (1 - self.lambda_) * self._base(eta) ** (1 / self.lambda_ - 2)
+        return self.inverse(transformed) + self.scale * second * s**2 / 2
+
+    def _base(self, eta: np.ndarray) -> np.ndarray:
+        return self.lambda_ * eta + 1
 
 
 def shift_for(response: np.ndarray, margin: float = SHIFT_MARGIN) -> float:
@@ -89,7 +100,7 @@ def profile(response: np.ndarray, matrix: np.ndarray) -> Callable[[float], float
     −N/2·ln(SSE(λ)/N) with y(λ) = (y^λ − 1)/(λ·g^(λ−1)), g the geometric mean.
     """
     q = linalg.qr(matrix, mode='economic')[0]
-    geometric_mean = float(np.exp(np.log(response).mean()))
+    geometric_mean = _geometric_mean(response)
     scaled = response / geometric_mean
 
     def log_likelihood(power: float) -> float:
@@ -98,6 +109,10 @@ def profile(response: np.ndarray, matrix: np.ndarray) -> Callable[[float], float
         return float(-len(y) / 2 * np.log(residuals @ residuals / len(y)))
 
     return log_likelihood
+
+
+def _geometric_mean(response: np.ndarray) -> float:
+    return float(np.exp(np.log(response).mean()))
 
 
 def profile_lambda(response: np.ndarray, matrix: np.ndarray) -> float:
@@ -147,20 +162,36 @@ def choose_transform(text: str, response: np.ndarray, matrix: np.ndarray) -> Tra
         if shift == 0
         else f'-min + {SHIFT_MARGIN:g}·(max - min) of the fitted rows'
     )
+    scale = _geometric_mean(response + shift)
     if kind == 'log':
-        return Transform(kind, 0.0, shift, rule)
+        return _checked(Transform(kind, 0.0, shift, rule, scale), response)
     if kind == 'power':
-        return Transform(kind, _power(text, value), shift, rule)
+        return _checked(Transform(kind, _power(text, value), shift, rule, scale), response)
     if kind != 'boxcox':
         raise AnalysisError(f'transform {text!r}: expected none, log, boxcox or power:L')
-    return _boxcox(Transform(kind, 1.0, shift, rule), response, matrix)
+    return _checked(_boxcox(Transform(kind, 1.0, shift, rule, scale), response, matrix), response)
 
 
 def _power(text: str, value: str) -> float:
     try:
-        return float(value)
+        power = float(value)
     except ValueError:
-        raise AnalysisError(f'transform {text!r}: expected a number after power:') from None
+        power = np.nan
+    if not np.isfinite(power):
+        raise AnalysisError(f'transform {text!r}: expected a number after power:')
+    return power
+
+
+def _checked(transform: Transform, response: np.ndarray) -> Transform:
+    """Return the transform, if different responses stay different under it."""
+    values = transform.forward(response)
+    if not np.isfinite(values).all() or np.unique(values).size < np.unique(response).size:
+        raise AnalysisError(
+            f'power {transform.lambda_:g} of responses from {response.min():g} to '
+            f'{response.max():g} is beyond the digits of floating point numbers: choose a power '
+            'nearer to 1'
+        )
+    return transform
 
 
 def _boxcox(blank: Transform, response: np.ndarray, matrix: np.ndarray) -> Transform:

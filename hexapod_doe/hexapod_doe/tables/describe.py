@@ -11,7 +11,7 @@ import pandas as pd
 from hexapod_doe.analysis.findings import TwoPart
 from hexapod_doe.analysis.results import Analysis, DesignSummary
 from hexapod_doe.designs.aliases import defining_relation, defining_words, resolution
-from hexapod_doe.fitting.model import corners, labels
+from hexapod_doe.fitting.model import centre_points, corners, labels
 from hexapod_doe.fitting.transform import BOUNDS
 from hexapod_doe.tables.table import BLOCK, RunTable
 
@@ -26,7 +26,7 @@ def summarise(table: RunTable, aliases: Mapping[str, str]) -> DesignSummary:
     """Describe the design that the rows of a table show."""
     missing, expected = missing_cases(table.levels)
     relation, length = describe_words(table.levels)
-    centre = table.levels.eq(0).all(axis=1)
+    centre = centre_points(table.levels)
     runs = table.rows[~centre].groupby('case').size()
     regular = len(missing) <= _MISSING_SHARE * expected
     return DesignSummary(
@@ -142,7 +142,7 @@ def missing_cases(levels: pd.DataFrame) -> tuple[tuple[str, ...], int]:
         The missing labels in Yates order and the number of cases of that fraction.
     """
     factors = [str(name) for name in levels.columns]
-    factorial = levels[(levels != 0).all(axis=1)].drop_duplicates()
+    factorial = levels[~centre_points(levels)].drop_duplicates()
     words = defining_words(factorial.to_numpy(float), ''.join(factors))
     grid = corners(factors)
     inside = np.ones(len(grid), dtype=bool)
@@ -155,6 +155,6 @@ def missing_cases(levels: pd.DataFrame) -> tuple[tuple[str, ...], int]:
 
 def describe_words(levels: pd.DataFrame) -> tuple[str, int | None]:
     """Return the defining relation of the rows and their resolution (None: a full factorial)."""
-    factorial = levels[(levels != 0).all(axis=1)].drop_duplicates()
+    factorial = levels[~centre_points(levels)].drop_duplicates()
     words = defining_words(factorial.to_numpy(float), ''.join(map(str, levels.columns)))
     return defining_relation(words), resolution(words)

@@ -11,7 +11,7 @@ import pandas as pd
 
 from hexapod_doe.errors import TableError
 from hexapod_doe.fitting.blocks import block_basis, no_blocks
-from hexapod_doe.fitting.model import labels
+from hexapod_doe.fitting.model import centre_points, labels
 
 RESPONSE = 'response'
 BLOCK = 'block'
@@ -51,6 +51,11 @@ class RunTable:
     def values(self) -> np.ndarray:
         """The response (n,)."""
         return self.rows[RESPONSE].to_numpy(float)
+
+    @property
+    def all_blocks(self) -> np.ndarray:
+        """Basis of the differences between the blocks of all rows (n, b)."""
+        return self.block_basis(np.ones(len(self.rows), dtype=bool))
 
     def block_basis(self, kept: np.ndarray) -> np.ndarray:
         """Return the basis of the differences between blocks of the rows kept (kept, b)."""
@@ -99,11 +104,6 @@ def build_rows(raw: pd.DataFrame, factors: Sequence[str]) -> tuple[pd.DataFrame,
     if BLOCK in rows and (fault := block_fault(rows['case'], rows[BLOCK])):
         raise TableError(fault)
     return rows, (*dropped, *repeated, *renumbered)
-
-
-def centre_points(levels: pd.DataFrame) -> np.ndarray:
-    """Return which rows are centre points (n,): numeric factors at 0, categorical ones at ±1."""
-    return levels.eq(0).any(axis=1).to_numpy()
 
 
 def _check_levels(raw: pd.DataFrame, factors: Sequence[str]) -> None:

@@ -40,10 +40,10 @@ def test_the_mean_of_more_runs_is_surer(plasma: Fit) -> None:
 
 
 def test_bounds_outside_the_transform_do_not_exist() -> None:
-    # The way back of power 2 ends at -1/2: the fit of 597 - 560 is above it, its interval of
-    # half width 45 is not.
+    # The way back of power 2 ends at 1/2 (g = 1): the fit of 597 - 559 is above it, its interval
+    # of half width 45 is not.
     rows = pd.read_csv(DATA / 'plasma_2_3_r2.csv')
-    fit = ols(rows[list('ABC')], rows['y'].to_numpy(float) - 560, ('1', 'A', 'C', 'AC'))
+    fit = ols(rows[list('ABC')], rows['y'].to_numpy(float) - 559, ('1', 'A', 'C', 'AC'))
     first = predict_all(fit, 'ABC', Transform('power', 2.0, 0.0, ''), 0.95, set(), SAFE)[0]
     assert first.fit == pytest.approx(np.sqrt(2 * 37 + 1))
     assert first.ci[0] is None

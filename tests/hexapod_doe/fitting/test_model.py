@@ -8,6 +8,7 @@ from hexapod_doe.designs.design import fraction
 from hexapod_doe.fitting.model import (
     AliasedTermsError,
     alias_strings,
+    centre_points,
     check_rank,
     corners,
     estimable_terms,
@@ -29,10 +30,18 @@ def test_parse_terms_adds_the_constant_and_sorts() -> None:
     assert parse_terms('AB, A,B*A,B', 'AB') == ('1', 'A', 'B', 'AB')
 
 
-def test_curvature_is_a_term_unless_c_and_p_are_factors() -> None:
-    assert parse_terms('A,CP', 'AB') == ('1', 'A', 'CP')
+def test_curvature_is_a_term_that_no_product_of_factors_is_called_by() -> None:
+    assert parse_terms('A,curvature', 'AB') == ('1', 'A', 'curvature')
+    assert parse_terms('CP,curvature', 'CP') == ('1', 'CP', 'curvature')
     levels = pd.DataFrame({'C': [-1, 1, 0], 'P': [1, 1, 0]})
-    assert model_matrix(levels, ['CP'])[:, 0].tolist() == [-1, 1, 0]
+    assert model_matrix(levels, ['CP', 'curvature']).tolist() == [[-1, 0], [1, 0], [0, 1]]
+
+
+def test_switches_stay_on_or_off_at_centre_points() -> None:
+    # As in cases/80_center_partial: A and B are numbers, C and D switches.
+    levels = pd.DataFrame([[-1, 1, 1, -1], [0, 0, 1, -1]], columns=list('ABCD'))
+    assert centre_points(levels).tolist() == [False, True]
+    assert labels(levels) == ['BC', 'centre C']
 
 
 @pytest.mark.parametrize(
@@ -50,7 +59,7 @@ def test_corners_are_in_yates_order() -> None:
 
 def test_parents() -> None:
     assert parents('ABD') == ('BD', 'AD', 'AB')
-    assert parents('A') == parents('1') == parents('CP') == ()
+    assert parents('A') == parents('1') == parents('curvature') == ()
 
 
 def test_aliased_terms_are_refused_by_name() -> None:

@@ -6,8 +6,9 @@ import pandas as pd
 import pytest
 from hexapod_doe.designs.design import factor_letters, fraction, from_generators
 from hexapod_doe.errors import AnalysisError
+from hexapod_doe.fitting.curvature import curvature
+from hexapod_doe.fitting.elimination import eliminate
 from hexapod_doe.fitting.model import corners, estimable_terms, model_matrix
-from hexapod_doe.fitting.pure_error import curvature
 from hexapod_doe.fitting.regression import ols
 from hypothesis import given
 from hypothesis import strategies as st
@@ -116,3 +117,29 @@ def test_curvature_without_pure_error_has_no_test() -> None:
     bend = curvature(levels, np.array([1.0, 2.0, 3.0, 4.0, 5.0]))
     # (2.5 - 5)^2 * 4 * 1 / 5
     assert (bend.difference, bend.ss, bend.p) == (-2.5, pytest.approx(5.0), None)
+
+
+def test_an_offset_costs_no_digits() -> None:
+    levels, response = random_table(np.random.default_rng(5))
+    terms = estimable_terms(levels, 2)
+    plain, far = ols(levels, response, terms), ols(levels, response + 1e12, terms)
+    # A number near 1e12 has steps of 1.2e-4.
+    assert far.coef[1:] == pytest.approx(plain.coef[1:], abs=1e-3)
+    assert far.s == pytest.approx(plain.s, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ('factor', 'offset', 'message'),
+    [(1e-16, 1.0, 'do not resolve'), (1e200, 0.0, 'another unit'), (1e-200, 0.0, 'another unit')],
+)
+def test_a_response_without_digits_is_refused(factor: float, offset: float, message: str) -> None:
+    levels, response = random_table(np.random.default_rng(5))
+    with pytest.raises(AnalysisError, match=message):
+        ols(levels, response * factor + offset, ('1', 'A'))
+
+
+def test_rounding_is_no_effect() -> None:
+    levels, _ = random_table(np.random.default_rng(5))
+    exact = 300 + 80 * levels['C'].to_numpy(float)
+    kept, _ = eliminate(levels, exact, estimable_terms(levels, 2))
+    assert kept == ('1', 'C')

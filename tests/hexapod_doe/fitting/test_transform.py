@@ -2,12 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 
 import json
+from decimal import Decimal, localcontext
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 from hexapod_doe.errors import AnalysisError
 from hexapod_doe.fitting.model import corners, model_matrix
+from hexapod_doe.fitting.regression import ols
 from hexapod_doe.fitting.transform import (
     Transform,
     choose_transform,
@@ -15,39 +18,41 @@ from hexapod_doe.fitting.transform import (
     profile_lambda,
     shift_for,
 )
+from statsmodels.regression.linear_model import OLS
 
+CASES = Path(__file__).parents[2] / 'data' / 'cases'
 CHECKS = json.loads(
     (Path(__file__).parents[2] / 'data' / 'doe_cases' / 'formula_checks.json').read_text()
 )
 
 
-def transform(lambda_: float, shift: float = 0.0) -> Transform:
-    return Transform('power', lambda_, shift, '')
+def transform(lambda_: float, shift: float = 0.0, scale: float = 1.0) -> Transform:
+    return Transform('power', lambda_, shift, '', scale)
 
 
 @pytest.mark.parametrize('lambda_', [-1.0, -0.5, 0.0, 0.5, 1.0, 2.5])
 def test_the_way_back_is_the_inverse(lambda_: float) -> None:
     y = np.array([-1.5, 0.2, 3.0, 40.0])
-    there = transform(lambda_, shift=2.0)
+    there = transform(lambda_, shift=2.0, scale=3.0)
     assert there.inverse(there.forward(y)) == pytest.approx(y, rel=1e-9)
 
 
 def test_below_the_domain_there_is_no_way_back() -> None:
-    assert np.isnan(transform(2.0).inverse(np.array([-0.6]))).all()
+    assert np.isnan(transform(2.0).inverse(np.array([0.4]))).all()
 
 
 def test_second_order_mean_and_slope() -> None:
     # STATS: lambda 2, eta 50, sigma 8: median 10.0499, mean 10.0183.
     expected = CHECKS['back_transform_example']
     found = transform(2.0)
-    eta = np.array([expected['eta']])
+    eta = 1 + np.array([expected['eta']])  # the reference leaves out g, which is 1 here
     assert found.inverse(eta)[0] == pytest.approx(expected['point_back_transformed'])
     assert found.mean(eta, expected['sigma'])[0] == pytest.approx(expected['second_order_mean'])
     assert found.slope(eta)[0] == pytest.approx(expected['g_prime'])
 
 
 def test_the_mean_of_a_log_normal() -> None:
-    assert transform(0.0).mean(np.array([1.0]), 0.5)[0] == pytest.approx(np.exp(1.125))
+    assert transform(0.0).mean(np.array([2.0]), 0.5)[0] == pytest.approx(np.exp(1.125))
 
 
 def test_lambda_is_found_given_the_model() -> None:
@@ -88,10 +93,33 @@ def test_nothing_to_judge_lambda_by() -> None:
         choose_transform('boxcox', np.arange(1.0, 5.0), matrix)
 
 
-@pytest.mark.parametrize('name', ['sqrt', 'power:', 'power:x'])
+@pytest.mark.parametrize('name', ['sqrt', 'power:', 'power:x', 'power:nan', 'power:inf'])
 def test_unknown_transforms(name: str) -> None:
     with pytest.raises(AnalysisError, match='transform'):
         choose_transform(name, np.ones(4), np.ones((4, 1)))
+
+
+@pytest.mark.parametrize('lambda_', [-30.0, -5.0, -3.0, 0.0, 5.0, 30.0])
+def test_any_power_keeps_the_digits_of_returns_near_3500(lambda_: float) -> None:
+    rows = pd.read_csv(CASES / 'F5_boxcox_returns3500.csv')
+    y, levels = rows['y'].to_numpy(float), rows[list('ABC')]
+    terms = ('1', 'A', 'B', 'AB')
+    there = choose_transform(f'power:{lambda_}', y, model_matrix(levels, terms))
+    assert there is not None
+    assert there.inverse(there.forward(y)) == pytest.approx(y, rel=1e-12)
+    # The same power by exact rational and 60-digit arithmetic; R² has no unit.
+    with localcontext(prec=60):
+        plain = [Decimal(v) ** int(lambda_) if lambda_ else Decimal(v).ln() for v in y]
+        low, high = min(plain), max(plain)
+        exact = np.array([float((v - low) / (high - low)) for v in plain])
+    reference = OLS(exact, model_matrix(levels, terms)).fit().rsquared
+    assert ols(levels, there.forward(y), terms).r2 == pytest.approx(reference, abs=1e-9)
+
+
+def test_a_power_beyond_the_digits_is_refused() -> None:
+    y = pd.read_csv(CASES / 'F5_boxcox_returns3500.csv')['y'].to_numpy(float)
+    with pytest.raises(AnalysisError, match='choose a power nearer to 1'):
+        choose_transform('power:-3000', y, np.ones((len(y), 1)))
 
 
 def test_lambda_stays_within_its_bounds() -> None:

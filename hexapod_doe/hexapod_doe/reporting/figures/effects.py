@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hexapod_doe.analysis.results import Analysis, MainEffect
-from hexapod_doe.designs.terms import order
+from hexapod_doe.designs.terms import is_interaction, order
 from hexapod_doe.reporting.figures.chart import Chart
 from hexapod_doe.reporting.figures.parts import (
     canvas,
@@ -83,7 +83,7 @@ def interactions(analysis: Analysis) -> Chart | None:
         figure.supylabel(unit_label(analysis), x=0.01, fontsize=9, color=MUTED)
         return figure
 
-    in_model = [term for term in analysis.final.terms if order(term) == 2]
+    in_model = [term for term in analysis.final.terms if order(term) == 2 and is_interaction(term)]
     title = (
         f'{len(in_model)} interactions stay in the model'
         if len(in_model) > 1
@@ -172,9 +172,9 @@ def _bars_overlap(first: MainEffect, second: MainEffect) -> bool:
 def _interaction_terms(analysis: Analysis) -> list[str]:
     """Return two-factor terms of the final model, else the largest of the first one."""
     final, first = analysis.final, analysis.steps[0]
-    pool = [term for term in final.terms if order(term) == 2 and term != 'CP']
+    pool = [term for term in final.terms if order(term) == 2 and is_interaction(term)]
     sizes = final.effects if pool else first.effects
-    pool = pool or [term for term in first.terms if order(term) == 2 and term != 'CP']
+    pool = pool or [term for term in first.terms if order(term) == 2 and is_interaction(term)]
     limit = MAX_INTERACTIONS if sizes is final.effects else 3
     return sorted(pool, key=lambda term: -abs(sizes[term]))[:limit]
 
