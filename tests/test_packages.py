@@ -33,6 +33,7 @@ ROSDEP_KEYS = {
     'pydantic': 'python3-pydantic',
     'rich': 'python3-rich',
     'scipy': 'python3-scipy',
+    'statsmodels': '',
     'tensorboardX': 'python3-tensorboardX-pip',
     'torch': 'python3-torch',
     'yaml': 'python3-yaml',
