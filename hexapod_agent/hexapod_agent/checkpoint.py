@@ -61,7 +61,7 @@ def load(path: str | Path, to_resume: bool = False) -> Trainer:
         CheckpointError: The file is missing, damaged, something else, of a configuration that
             this version does not know, or not `to_resume`.
     """
-    content = _read(Path(path))
+    content = _read(Path(path).expanduser())
     try:
         config = AgentConfig.from_mapping(content['config'], 'its configuration')
         trainer = Trainer(ObservationSpec(content['observations']), config, content['seed'])

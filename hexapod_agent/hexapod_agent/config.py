@@ -64,6 +64,11 @@ class AgentConfig:
         """Return nested plain values, as `from_mapping` takes them."""
         return asdict(self)
 
+    def differences(self, other: 'AgentConfig') -> dict[str, tuple[Any, Any]]:
+        """Return the values of both, this one's first, by the dotted keys in which they differ."""
+        mine, its = _flat(self.to_mapping()), _flat(other.to_mapping())
+        return {key: (mine[key], its[key]) for key in mine if mine[key] != its[key]}
+
     @classmethod
     def from_mapping(cls, changes: Mapping[str, Any], source: str) -> 'AgentConfig':
         """Build a configuration from article.yaml with some values changed.
@@ -115,12 +120,13 @@ class AgentConfig:
 
 def _changes(path: str | Path) -> Mapping[str, Any]:
     """Read a file of changes."""
-    if not Path(path).is_file():
+    file = Path(path).expanduser()
+    if not file.is_file():
         raise ConfigError(
             f'config file {str(path)!r} not found, expected a YAML file with sections of '
             f'{", ".join(field.name for field in fields(AgentConfig))}'
         )
-    return _read(Path(path))
+    return _read(file)
 
 
 def _read(path: Any) -> Mapping[str, Any]:
@@ -144,6 +150,15 @@ def _check_keys(cls: type, mapping: Any, source: str, prefix: str) -> None:
             )
         if is_dataclass(known[key]):
             _check_keys(known[key], value, source, f'{prefix}{key}.')
+
+
+def _flat(mapping: Mapping[str, Any], prefix: str = '') -> dict[str, Any]:
+    """Return nested values by their dotted keys."""
+    values: dict[str, Any] = {}
+    for key, value in mapping.items():
+        nested = _flat(value, f'{prefix}{key}.') if isinstance(value, Mapping) else None
+        values |= nested if nested is not None else {f'{prefix}{key}': value}
+    return values
 
 
 def _merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:

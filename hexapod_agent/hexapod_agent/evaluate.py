@@ -8,7 +8,6 @@ import json
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
-from pathlib import Path
 
 import numpy as np
 from hexapod_cpg.mapping import ACTION_SIZE
@@ -18,6 +17,7 @@ from rich.progress import Progress, track
 from rich.table import Table
 
 from hexapod_agent import checkpoint
+from hexapod_agent.command_line import MOST_SEED, output_file, path, whole
 from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.constant_action import GENERATIONS, best_constant_action
 from hexapod_agent.env import HexapodLine
@@ -43,6 +43,8 @@ def main(args: Sequence[str] | None = None) -> None:
         parser.error('--graph: expected a CHECKPOINT for the graph to play')
     if bool(options.checkpoint) == bool(options.policy):
         parser.error('expected either a CHECKPOINT or --policy')
+    if options.checkpoint and options.config:
+        parser.error('--config: a CHECKPOINT has its own, expected it with --policy only')
     try:
         name, subject = _subject(options)
         console = Console()
@@ -52,27 +54,39 @@ def main(args: Sequence[str] | None = None) -> None:
     evaluation = summarize(episodes)
     console.print(_table(name, evaluation))
     if options.json:
-        Path(options.json).write_text(json.dumps(_plain(evaluation), indent=2) + '\n')
+        text = json.dumps(_plain(evaluation), indent=2)
+        try:
+            options.json.write_text(f'{text}\n', encoding='utf-8')
+        except OSError as error:
+            parser.error(f'--json: {error}')
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog='evaluate', description=__doc__)
-    parser.add_argument('checkpoint', nargs='?', help='file written by train')
+    parser.add_argument('checkpoint', nargs='?', type=path, help='file written by train')
     parser.add_argument(
         '--policy',
         choices=('zero', 'random', 'constant'),
         help='a baseline instead; constant: the best constant action, searched for minutes',
     )
-    parser.add_argument('--config', help='configuration of the baseline; default article.yaml')
-    parser.add_argument('--starts', type=int, default=50, help='episodes (default 50)')
-    parser.add_argument('--seed', type=int, default=1, help='seed of the starts (default 1)')
+    parser.add_argument(
+        '--config', type=path, help='configuration of the baseline; default article.yaml'
+    )
+    parser.add_argument(
+        '--starts', type=whole(1, 1_000_000), default=50, help='episodes (default 50)'
+    )
+    parser.add_argument(
+        '--seed', type=whole(0, MOST_SEED), default=1, help='seed of the starts (default 1)'
+    )
     parser.add_argument(
         '--graph',
         action='store_true',
         help='play through the nodes sim, cpg and agent and their topics, started here in a '
         'namespace of their own; the figures are the same to the last bit',
     )
-    parser.add_argument('--json', metavar='FILE', help='write the figures to a file as well')
+    parser.add_argument(
+        '--json', type=output_file(), metavar='FILE', help='write the figures to a file as well'
+    )
     return parser
 
 
@@ -112,7 +126,7 @@ def _on_graph(options: argparse.Namespace) -> Iterator[Episode]:
     # Only here: without --graph, evaluating needs no ROS.
     from hexapod_agent.evaluate_node import episodes_on_graph
 
-    return episodes_on_graph(Path(options.checkpoint), options.starts, options.seed)
+    return episodes_on_graph(options.checkpoint, options.starts, options.seed)
 
 
 def _table(name: str, evaluation: Evaluation) -> Table:

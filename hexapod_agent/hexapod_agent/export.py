@@ -10,7 +10,6 @@ is the contract of what to feed in and what comes out.
 import argparse
 import json
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,7 +20,7 @@ from numpy.typing import NDArray
 from onnx import TensorProto, helper, numpy_helper
 
 from hexapod_agent import checkpoint
-from hexapod_agent.config import ConfigError
+from hexapod_agent.command_line import output_file, path
 from hexapod_agent.layers import NORM_EPSILON
 from hexapod_agent.observation import PREVIOUS_ACTION, ObservationSpec
 from hexapod_agent.training import Trainer
@@ -35,14 +34,14 @@ _BATCH = 'batch'
 def main(args: Sequence[str] | None = None) -> None:
     """Write the file that the command line names."""
     parser = argparse.ArgumentParser(prog='export', description=__doc__)
-    parser.add_argument('checkpoint', help='file of train')
-    parser.add_argument('out', type=Path, help='ONNX file to write')
+    parser.add_argument('checkpoint', type=path, help='file of train')
+    parser.add_argument('out', type=output_file(), help='ONNX file to write')
     options = parser.parse_args(args)
     try:
         trainer = checkpoint.load(options.checkpoint)
-    except (ConfigError, checkpoint.CheckpointError) as error:
+        onnx.save(policy_model(trainer), options.out)
+    except (OSError, checkpoint.CheckpointError) as error:
         parser.error(str(error))
-    onnx.save(policy_model(trainer), options.out)
     print(f'{options.out}: action from {", ".join(trainer.spec.sizes)}')
 
 

@@ -5,14 +5,25 @@
 
 import argparse
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 
 import numpy as np
 from hexapod_cpg.mapping import ACTION_SIZE
-from hexapod_sim.film import Camera, FilmError, Frame, strip, write_film, write_picture
+from hexapod_sim.film import (
+    FILMS,
+    MOST_HEIGHT,
+    MOST_WIDTH,
+    PICTURES,
+    Camera,
+    FilmError,
+    Frame,
+    strip,
+    write_film,
+    write_picture,
+)
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 
 from hexapod_agent import checkpoint
+from hexapod_agent.command_line import MOST_SEED, output_file, path, real, whole
 from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.policies import Policy, constant_policy, trained_policy
@@ -32,11 +43,11 @@ def main(args: Sequence[str] | None = None) -> None:
         frames = list(film(env, policy, options))
         if options.out:
             write_film(frames, options.out, FRAMES_PER_SECOND)
-    except (ConfigError, checkpoint.CheckpointError, FilmError) as error:
+        if options.strip:
+            chosen = np.linspace(0, len(frames) - 1, options.frames).round().astype(int)
+            write_picture(strip([frames[index] for index in chosen]), options.strip)
+    except (ConfigError, checkpoint.CheckpointError, FilmError, OSError) as error:
         parser.error(str(error))
-    if options.strip:
-        chosen = np.linspace(0, len(frames) - 1, options.frames).round().astype(int)
-        write_picture(strip([frames[index] for index in chosen]), options.strip)
 
 
 def film(env: HexapodLine, policy: Policy, options: argparse.Namespace) -> Iterator[Frame]:
@@ -56,17 +67,18 @@ def film(env: HexapodLine, policy: Policy, options: argparse.Namespace) -> Itera
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog='film', description=__doc__)
-    parser.add_argument('checkpoint', nargs='?', help='file of train; default: action zero')
-    parser.add_argument('--config', help='file of changes to the configuration')
-    parser.add_argument('--seed', type=int, default=1, help='seed of the start (default 1)')
-    parser.add_argument('--seconds', type=float, default=6.0, help='longest film (default 6)')
-    parser.add_argument('--camera', choices=('track', 'top'), default='track')
-    parser.add_argument('--zoom', type=float, default=1.6, help='of the lens (default 1.6)')
-    parser.add_argument('--width', type=int, default=480, help='pixels (default 480)')
-    parser.add_argument('--height', type=int, default=320, help='pixels (default 320)')
-    parser.add_argument('--out', type=Path, help='film to write, .gif or .mp4')
-    parser.add_argument('--strip', type=Path, help='picture of some frames side by side to write')
-    parser.add_argument('--frames', type=int, default=5, help='frames of the strip (default 5)')
+    add = parser.add_argument
+    add('checkpoint', nargs='?', type=path, help='file of train; default: action zero')
+    add('--config', type=path, help='file of changes to the configuration')
+    add('--seed', type=whole(0, MOST_SEED), default=1, help='seed of the start (default 1)')
+    add('--seconds', type=real(0.05, 600.0), default=6.0, help='longest film (default 6)')
+    add('--camera', choices=('track', 'top'), default='track')
+    add('--zoom', type=real(0.1, 20.0), default=1.6, help='of the lens (default 1.6)')
+    add('--width', type=whole(16, MOST_WIDTH), default=480, help='pixels (default 480)')
+    add('--height', type=whole(16, MOST_HEIGHT), default=320, help='pixels (default 320)')
+    add('--out', type=output_file(*FILMS), help='film to write, .gif or .mp4')
+    add('--strip', type=output_file(*PICTURES), help='picture of frames side by side to write')
+    add('--frames', type=whole(1, 50), default=5, help='frames of the strip (default 5)')
     return parser
 
 

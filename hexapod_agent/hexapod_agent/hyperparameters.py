@@ -8,9 +8,19 @@ No torch here: the environment reads the same file as the learner.
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import NonNegativeFloat, PositiveFloat, PositiveInt
+from annotated_types import Interval, MinLen
+
+# What the values may be: far wider than anything sensible, but with these nothing divides by zero,
+# waits for ever or is not a number.
+_Count = Annotated[int, Interval(ge=1, le=10_000_000)]
+_Rows = Annotated[int, Interval(ge=1, le=1_000_000_000)]
+_Layers = Annotated[tuple[Annotated[int, Interval(ge=1, le=100_000)], ...], MinLen(1)]
+_Factor = Annotated[float, Interval(ge=0.0, le=1e6)]
+_PositiveFactor = Annotated[float, Interval(gt=0.0, le=1e6)]
+_Share = Annotated[float, Interval(ge=0.0, le=1.0)]
+_Value = Annotated[float, Interval(ge=-1e9, le=1e9)]
 
 
 @dataclass(frozen=True)
@@ -27,11 +37,11 @@ class ActorConfig:
         layer_norm: Whether each hidden layer is normalised before its ReLU.
     """
 
-    hidden: tuple[int, ...]
-    learning_rate: float
-    l2: float
-    gradient_threshold: float
-    preactivation_penalty: float
+    hidden: _Layers
+    learning_rate: _Factor
+    l2: _Factor
+    gradient_threshold: _PositiveFactor
+    preactivation_penalty: _Factor
     normalize_loss: bool
     layer_norm: bool
 
@@ -51,12 +61,12 @@ class CriticConfig:
         twin: Whether there are two, the lesser of whose target values is learned from.
     """
 
-    hidden: tuple[int, ...]
+    hidden: _Layers
     merge: Literal['add', 'append']
-    initial_value: float
-    learning_rate: float
-    l2: float
-    gradient_threshold: float
+    initial_value: _Value
+    learning_rate: _Factor
+    l2: _Factor
+    gradient_threshold: _PositiveFactor
     layer_norm: bool
     twin: bool
 
@@ -77,14 +87,14 @@ class DdpgConfig:
         reward_scale: Factor of the reward as the critic learns it.
     """
 
-    batch_size: int
-    buffer_size: int
-    discount: float
-    n_step: int
-    target_smoothing: float
-    update_every: PositiveInt
-    update_ratio: PositiveFloat
-    reward_scale: float
+    batch_size: _Count
+    buffer_size: _Rows
+    discount: _Share
+    n_step: _Count
+    target_smoothing: _Share
+    update_every: _Count
+    update_ratio: _PositiveFactor
+    reward_scale: _PositiveFactor
 
     @property
     def group_size(self) -> int:
@@ -116,11 +126,11 @@ class NoiseConfig:
         sigma_min: Least sigma [StandardDeviationMin].
     """
 
-    attraction: float
-    sigma: float
-    mean: float
-    decay: float
-    sigma_min: float
+    attraction: _Factor
+    sigma: _Factor
+    mean: _Value
+    decay: _Share
+    sigma_min: _Factor
 
 
 @dataclass(frozen=True)
@@ -139,8 +149,8 @@ class TrainingConfig:
             parameters, output layers, losses and optimisers stay float32, and so does acting.
     """
 
-    episodes: int
-    window: int
-    checkpoint_every: int
-    final_rate: NonNegativeFloat
+    episodes: _Count
+    window: _Count
+    checkpoint_every: _Count
+    final_rate: _Factor
     precision: Literal['float32', 'float32_fast', 'bfloat16']

@@ -119,7 +119,7 @@ class PlayNode(Node):
 
 def _absolute(path: str) -> str:
     """Return the path as the worker understands it, wherever it runs; nothing stays nothing."""
-    return str(Path(path).resolve()) if path else ''
+    return str(Path(path).expanduser().resolve()) if path else ''
 
 
 def main(args: Sequence[str] | None = None) -> None:

@@ -13,6 +13,8 @@ from hexapod_agent.config import AgentConfig
 from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.training import Trainer
 
+_SHOWN = 3  # differences that a message names
+
 
 def checkpoint_path(bag: str | Path) -> Path:
     """Return where the checkpoint of a bag's run is."""
@@ -40,15 +42,38 @@ def resumed(
     if not path.exists():
         return None
     trainer = checkpoint.load(path, to_resume=True)
-    found = (trainer.spec.letters, trainer.seed, trainer.config)
-    if found != (spec.letters, seed, config) or trainer.episode >= episodes:
+    differences = different(trainer, spec, config, seed)
+    if trainer.episode >= episodes:
+        differences.append(f'{trainer.episode} episodes have been, less than {episodes} expected')
+    if differences:
         raise CheckpointError(
-            f'checkpoint {str(path)!r}: of another run (sensors {trainer.spec.letters or "none"}, '
-            f'seed {trainer.seed}, {trainer.episode} episodes), expected sensors '
-            f'{spec.letters or "none"}, seed {seed}, less than {episodes} episodes, and the same '
-            'configuration'
+            f'checkpoint {str(path)!r}: of another run: {listed(differences)}; expected the same '
+            'sensors, seed and configuration, and less episodes'
         )
     return trainer
+
+
+def different(
+    trainer: Trainer,
+    spec: ObservationSpec | None = None,
+    config: AgentConfig | None = None,
+    seed: int | None = None,
+) -> list[str]:
+    """Return in what a run is another than the one that is asked for; None asks for nothing."""
+    values: dict[str, tuple[object, object]] = {}
+    if spec is not None and spec.letters != trainer.spec.letters:
+        values['observations'] = (spec.letters, trainer.spec.letters)
+    if seed is not None and seed != trainer.seed:
+        values['seed'] = (seed, trainer.seed)
+    if config is not None:
+        values |= config.differences(trainer.config)
+    return [f'{key} is {asked!r} here, {found!r} there' for key, (asked, found) in values.items()]
+
+
+def listed(differences: list[str]) -> str:
+    """Return differences as a part of a message, the first of them if there are many."""
+    more = len(differences) - _SHOWN
+    return '; '.join([*differences[:_SHOWN], *([f'and {more} more'] if more > 0 else [])])
 
 
 def forget(bag: str | Path) -> None:

@@ -7,17 +7,19 @@ import argparse
 import csv
 import sys
 from collections.abc import Callable, Sequence
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from hexapod_agent import checkpoint
+from hexapod_agent.command_line import MOST_EPISODES, MOST_SEED, output_folder, path, whole
 from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.event_log import EventLog
 from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.run_checkpoint import different, listed
 from hexapod_agent.summary import EpisodeSummary
 from hexapod_agent.training import Trainer, TrainingDivergedError
 
@@ -45,22 +47,27 @@ def train(
     directory: Path,
     report: Callable[[EpisodeSummary], None] = lambda summary: None,
 ) -> None:
-    """Train until the run has so many episodes, with a log and checkpoints in a directory."""
+    """Train until the run has so many episodes, with a log and checkpoints in a directory.
+
+    Raises:
+        OSError: The disk refuses.
+        CheckpointError: Likewise.
+        TrainingDivergedError: A number is no longer finite.
+    """
     env = HexapodLine(trainer.spec.letters, trainer.config)
     directory.mkdir(parents=True, exist_ok=True)
-    rows = _kept_rows(directory / LOG, trainer.episode)
+    has_rows = _cut_log(directory / LOG, trainer.episode)
     with (
-        (directory / LOG).open('w', newline='') as file,
+        (directory / LOG).open('a', newline='') as file,
         EventLog(directory / EVENTS, trainer.episode) as events,
     ):
         writer = csv.writer(file)
-        for row in rows:
-            writer.writerow(row)
         while trainer.episode < episodes:
             summary = train_episode(env, trainer)
             columns = _columns(summary)
-            if summary.episode == 0:
+            if not has_rows:
                 writer.writerow(columns)
+                has_rows = True
             writer.writerow(columns.values())
             file.flush()
             events.add(summary)
@@ -78,12 +85,16 @@ def _columns(summary: EpisodeSummary) -> dict[str, Any]:
     return columns | {f'term_{name}': value for name, value in terms.items()}
 
 
-def _kept_rows(path: Path, episodes: int) -> list[list[str]]:
-    """Header and rows of the episodes that a resumed run does not repeat."""
-    if not episodes:
-        return []
-    with path.open(newline='') as file:
-        return list(csv.reader(file))[: episodes + 1]
+def _cut_log(log: Path, episodes: int) -> bool:
+    """Leave the header and the rows of the first episodes; return whether there are any."""
+    if not (episodes and log.exists()):
+        log.unlink(missing_ok=True)
+        return False
+    partial = log.with_name(f'{log.name}.partial')
+    with log.open(newline='') as file, partial.open('w', newline='') as kept:
+        kept.writelines(islice(file, episodes + 1))
+    partial.replace(log)
+    return log.stat().st_size > 0
 
 
 def main(args: Sequence[str] | None = None) -> None:
@@ -92,13 +103,24 @@ def main(args: Sequence[str] | None = None) -> None:
     options = parser.parse_args(args)
     try:
         trainer = _trainer(options)
-    except ValueError as error:  # configuration, observations or checkpoint
+        episodes = _episodes(options, trainer)
+        _train_with_progress(trainer, episodes, options.out)
+    except (ValueError, OSError, MemoryError) as error:  # configuration, checkpoint, disk, buffer
         parser.error(str(error))
-    episodes = options.episodes or trainer.config.training.episodes
-    console = Console()
+    except TrainingDivergedError as error:
+        sys.exit(f'train: {error}; {options.out / CHECKPOINT} is from before')
+    except KeyboardInterrupt:
+        print(f'train: interrupted; --resume goes on from {options.out / CHECKPOINT}, if any')
+        sys.exit(130)
+    print(f'final average reward {trainer.average_return:.1f}')
+    print(f'agent: {options.out / AGENT}')
+    print(f'to resume: {options.out / CHECKPOINT}')
+
+
+def _train_with_progress(trainer: Trainer, episodes: int, directory: Path) -> None:
     progress = Progress(
         TextColumn('{task.description}'), BarColumn(), MofNCompleteColumn(),
-        TimeRemainingColumn(), TextColumn('{task.fields[status]}'), console=console,
+        TimeRemainingColumn(), TextColumn('{task.fields[status]}'),
     )  # fmt: skip
     with progress:
         task = progress.add_task(
@@ -113,36 +135,77 @@ def main(args: Sequence[str] | None = None) -> None:
                 f'saturated {summary.saturated_share:.0%}',
             )
 
-        try:
-            train(trainer, episodes, options.out, report)
-        except TrainingDivergedError as error:
-            progress.stop()
-            sys.exit(f'train: {error}; {options.out / CHECKPOINT} is from before')
-    console.print(f'final average reward {trainer.average_return:.1f}')
-    console.print(f'agent: {options.out / AGENT}')
-    console.print(f'to resume: {options.out / CHECKPOINT}')
+        train(trainer, episodes, directory, report)
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog='train', description=__doc__)
-    parser.add_argument('--observations', default='', help='letters of the optional channels')
-    parser.add_argument('--seed', type=int, default=1, help='seed of the run (default 1)')
-    parser.add_argument('--episodes', type=int, help='length of the run; default of the config')
-    parser.add_argument('--config', help='YAML file of changes to article.yaml')
-    parser.add_argument('--out', type=Path, required=True, help='directory of log and checkpoints')
-    parser.add_argument('--resume', action='store_true', help='go on from the checkpoint in --out')
+    parser.add_argument('--observations', help='letters of the optional channels; default: none')
+    parser.add_argument('--seed', type=whole(0, MOST_SEED), help='seed of the run (default 1)')
+    parser.add_argument(
+        '--episodes',
+        type=whole(1, MOST_EPISODES),
+        help="length of the run, with what it has had already; default of the run's configuration",
+    )
+    parser.add_argument('--config', type=path, help='YAML file of changes to article.yaml')
+    parser.add_argument(
+        '--out', type=output_folder, required=True, help='directory of log and checkpoints'
+    )
+    parser.add_argument(
+        '--resume',
+        action='store_true',
+        help='go on from the checkpoint in --out, whose observations, seed and configuration hold',
+    )
     return parser
 
 
 def _trainer(options: argparse.Namespace) -> Trainer:
     """A new run, or the one that the directory holds."""
-    path = options.out / CHECKPOINT
+    file = options.out / CHECKPOINT
     if options.resume:
-        return checkpoint.load(path, to_resume=True)
-    if path.exists():
-        raise ConfigError(f'{str(path)!r} exists, expected --resume or another --out')
+        trainer = checkpoint.load(file, to_resume=True)
+        _check_same_run(options, trainer)
+        return trainer
+    if file.exists():
+        raise ConfigError(f'{str(file)!r} exists, expected --resume or another --out')
     config = AgentConfig.load(options.config)
-    return Trainer(ObservationSpec(options.observations), config, options.seed)
+    spec = ObservationSpec(options.observations or '')
+    return Trainer(spec, config, 1 if options.seed is None else options.seed)
+
+
+def _check_same_run(options: argparse.Namespace, trainer: Trainer) -> None:
+    """Refuse options of another run than the one that goes on.
+
+    Raises:
+        ConfigError: One of them says otherwise than the checkpoint.
+    """
+    given = options.observations
+    differences = different(
+        trainer,
+        None if given is None else ObservationSpec(given),
+        None if options.config is None else AgentConfig.load(options.config),
+        options.seed,
+    )
+    if differences:
+        raise ConfigError(
+            f'--resume: the run in {str(options.out)!r} is another: {listed(differences)}; '
+            'expected the same or none, as what the checkpoint has holds'
+        )
+
+
+def _episodes(options: argparse.Namespace, trainer: Trainer) -> int:
+    """Return the run's length.
+
+    Raises:
+        ConfigError: It is longer already.
+    """
+    episodes: int = options.episodes or trainer.config.training.episodes
+    if episodes < trainer.episode:
+        raise ConfigError(
+            f'--episodes is {episodes}, but the run in {str(options.out)!r} has had '
+            f'{trainer.episode}, expected at least as many'
+        )
+    return episodes
 
 
 if __name__ == '__main__':

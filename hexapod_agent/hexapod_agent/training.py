@@ -43,7 +43,7 @@ class Trainer:
         returns: Return of each complete episode.
 
     Raises:
-        ConfigError: No episode is as long as a group of updates.
+        ConfigError: No episode is as long as a group of updates, or no batch fits into the buffer.
     """
 
     def __init__(self, spec: ObservationSpec, config: AgentConfig, seed: int) -> None:
@@ -52,6 +52,11 @@ class Trainer:
             raise ConfigError(
                 f'ddpg.update_every is {group}, expected at most task.time_limit_steps, {steps}: '
                 'nothing would be learned'
+            )
+        if config.ddpg.buffer_size <= config.ddpg.batch_size:
+            raise ConfigError(
+                f'ddpg.buffer_size is {config.ddpg.buffer_size}, expected more than '
+                f'ddpg.batch_size, {config.ddpg.batch_size}: nothing would be learned'
             )
         self.spec, self.config, self.seed = spec, config, seed
         # One thread: a sum split over threads is not the same to the last bit.

@@ -21,6 +21,12 @@ from hexapod_sim.simulation import Simulation
 
 Frame = NDArray[np.uint8]
 
+FILMS = ('.gif', '.mp4')
+"""How the name of a film may end."""
+PICTURES = ('.png', '.jpg', '.jpeg', '.webp')
+"""How the name of a picture may end."""
+MOST_WIDTH, MOST_HEIGHT = 1280, 720  # pixels: offwidth and offheight of hexapod.xml
+
 _COLOURS = 96  # of a GIF's palette: more make it larger and the robot no prettier
 _GAP = 6  # white pixels between the frames of a strip
 

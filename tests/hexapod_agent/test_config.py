@@ -73,9 +73,17 @@ def test_mapping_round_trip():
         ('ddpg: {gamma: 1}', "unknown key 'ddpg.gamma', expected one of batch_size"),
         ('cpg: {hopf: {speed: 1}}', "unknown key 'cpg.hopf.speed'"),
         ('ddpg: {batch_size: many}', "ddpg.batch_size is 'many', expected"),
-        ('ddpg: {update_every: 0}', 'ddpg.update_every is 0, expected.*greater than 0'),
+        ('ddpg: {update_every: 0}', 'ddpg.update_every is 0, expected.*or equal to 1'),
         ('ddpg: {update_ratio: 0}', 'ddpg.update_ratio is 0, expected.*greater than 0'),
         ('ddpg: {update_ratio: 0.3}', r'update_ratio is 0.3, .*1/24: .* number .*, not 7.2'),
+        ('training: {episodes: 0}', 'training.episodes is 0, expected.*or equal to 1'),
+        ('training: {window: -1}', 'training.window is -1, expected.*or equal to 1'),
+        ('training: {checkpoint_every: 0}', 'training.checkpoint_every is 0, expected'),
+        ('actor: {hidden: []}', 'actor.hidden is .*, expected.*at least 1 item'),
+        ('actor: {hidden: [0]}', 'actor.hidden.0 is 0, expected'),
+        ('critic: {learning_rate: .nan}', 'critic.learning_rate is nan, expected'),
+        ('noise: {sigma: .inf}', 'noise.sigma is inf, expected'),
+        ('ddpg: {discount: 1.5}', 'ddpg.discount is 1.5, expected.*or equal to 1'),
         ('training: {final_rate: -1}', 'training.final_rate is -1, expected.*or equal to 0'),
         ('critic: {merge: multiply}', "critic.merge is 'multiply', expected.*'add' or 'append'"),
         ('cpg: {hopf: {gait: gallop}}', 'gallop.*expected'),
@@ -96,3 +104,18 @@ def test_missing_file_is_named(tmp_path):
         ConfigError, match=r'no.yaml.*not found, expected a YAML file with sections'
     ):
         AgentConfig.load(tmp_path / 'no.yaml')
+
+
+def test_the_home_folder_is_known(write, monkeypatch):
+    path = write('ddpg: {discount: 0.5}')
+    monkeypatch.setenv('HOME', str(path.parent))
+    assert AgentConfig.load('~/mine.yaml').ddpg.discount == 0.5
+
+
+def test_differences_are_named_by_key(write):
+    other = AgentConfig.load(write('ddpg: {discount: 0.5}\ncpg: {hopf: {alpha: 30.0}}'))
+    assert AgentConfig.load().differences(other) == {
+        'ddpg.discount': (0.99, 0.5),
+        'cpg.hopf.alpha': (20.0, 30.0),
+    }
+    assert other.differences(other) == {}

@@ -63,12 +63,88 @@ def test_resumed_log_is_the_uninterrupted_one(config_file, tmp_path):
         (('--observations', 'ABX'), "unknown letter 'X'"),
         (('--config', 'no.yaml'), "'no.yaml' not found"),
         (('--resume',), 'checkpoint.*not found'),
+        (('--episodes', 0), "--episodes: '0', expected a whole number from 1"),
+        (('--episodes', -3), "--episodes: '-3', expected a whole number from 1"),
+        (('--episodes', '2.5'), "--episodes: '2.5', expected a whole number from 1"),
+        (('--seed', -1), "--seed: '-1', expected a whole number from 0"),
+        (('--seed', 2**63), '--seed.*expected a whole number from 0'),
+        (('--config', '~nobody-of-this-name/a.yaml'), '--config.*home directory'),
     ],
 )
 def test_wrong_arguments_are_one_clear_error(tmp_path, capsys, arguments, message):
-    with pytest.raises(SystemExit):
+    with pytest.raises(SystemExit) as stopped:
         run('--out', tmp_path / 'run', *arguments)
+    assert stopped.value.code == 2
     assert re.search(message, capsys.readouterr().err)
+    assert not (tmp_path / 'run').exists()
+
+
+@pytest.mark.parametrize('out', ['file', 'file/run'])
+def test_a_folder_that_cannot_be_made_is_one_clear_error(config_file, tmp_path, capsys, out):
+    (tmp_path / 'file').write_text('something else')
+    with pytest.raises(SystemExit) as stopped:
+        run('--config', config_file, '--episodes', 1, '--out', tmp_path / out)
+    assert stopped.value.code == 2
+    assert str(tmp_path / out) in capsys.readouterr().err
+
+
+def test_the_home_folder_is_known(config_file, tmp_path, monkeypatch):
+    monkeypatch.setenv('HOME', str(tmp_path))
+    run('--config', '~/small.yaml', '--episodes', 1, '--out', '~/runs/a')
+    assert (tmp_path / 'runs' / 'a' / train.AGENT).exists()
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'message'),
+    [
+        (('--observations', 'ABCDE'), "observations is 'ABCDE' here, 'BC' there"),
+        (('--seed', 9), 'seed is 9 here, 1 there'),
+        (('--config', 'other'), r'ddpg\.discount is 0\.9 here, 0\.99 there'),
+        (('--episodes', 1), '--episodes is 1, but the run .* has had 2, expected at least as'),
+    ],
+)
+def test_a_resumed_run_stays_the_run_that_it_is(config_file, tmp_path, capsys, arguments, message):
+    out = tmp_path / 'run'
+    run('--observations', 'BC', '--episodes', 2, '--config', config_file, '--out', out)
+    before = {path.name: path.read_bytes() for path in out.iterdir() if path.is_file()}
+    mapping = yaml.safe_load(config_file.read_text())
+    mapping['ddpg']['discount'] = 0.9
+    other = tmp_path / 'other.yaml'
+    other.write_text(yaml.safe_dump(mapping))
+    with pytest.raises(SystemExit) as stopped:
+        run('--resume', '--out', out, *(other if each == 'other' else each for each in arguments))
+    assert stopped.value.code == 2
+    assert re.search(message, capsys.readouterr().err)
+    assert before == {path.name: path.read_bytes() for path in out.iterdir() if path.is_file()}
+
+
+def test_the_same_options_may_be_given_again(config_file, tmp_path):
+    whole, part = tmp_path / 'whole', tmp_path / 'part'
+    options = ['--observations', 'CB', '--seed', 3, '--config', config_file]
+    run(*options, '--episodes', 3, '--out', whole)
+    run(*options, '--episodes', 2, '--out', part)
+    run(*options, '--episodes', 3, '--out', part, '--resume')
+    assert log(part) == log(whole)
+
+
+def test_a_run_goes_on_without_its_log(config_file, tmp_path):
+    out = tmp_path / 'run'
+    run('--episodes', 2, '--config', config_file, '--out', out)
+    (out / train.LOG).unlink()
+    run('--episodes', 3, '--out', out, '--resume')
+    assert [row['episode'] for row in log(out)] == ['2']
+
+
+def test_a_damaged_checkpoint_is_refused_by_name(config_file, tmp_path, capsys):
+    out = tmp_path / 'run'
+    run('--episodes', 1, '--config', config_file, '--out', out)
+    content = bytearray((out / train.CHECKPOINT).read_bytes())
+    content[len(content) // 2] ^= 1
+    (out / train.CHECKPOINT).write_bytes(content)
+    with pytest.raises(SystemExit) as stopped:
+        run('--episodes', 2, '--out', out, '--resume')
+    assert stopped.value.code == 2
+    assert re.search(r'checkpoint.pt.*is damaged', capsys.readouterr().err)
 
 
 def test_finished_run_is_not_overwritten(config_file, tmp_path, capsys):
