@@ -18,6 +18,7 @@ from hexapod_node.spin import run
 from rclpy.node import Node
 from rclpy.task import Future
 
+from hexapod_doe.bags.location import user_path
 from hexapod_doe.contract.bag_evidence import bag_evidence
 from hexapod_doe.contract.check_options import CheckOptions, parse
 from hexapod_doe.contract.sensor_table import show
@@ -55,7 +56,7 @@ def tell(report: SensorReport, options: CheckOptions) -> int:
     else:
         show(report)
     if options.json not in ('', '-'):
-        Path(options.json).write_text(f'{text}\n', encoding='utf-8')
+        user_path(options.json).write_text(f'{text}\n', encoding='utf-8')
     return 0 if report.passed else 1
 
 
@@ -63,7 +64,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line; what follows `--ros-args` goes to the node."""
     words = list(sys.argv[1:] if arguments is None else arguments)
     count = words.index(_ROS_ARGS) if _ROS_ARGS in words else len(words)
-    options = parse(words[:count])
+    options = parse(words[:count], words[count + 1 :])
     if options.bag is None:
         remaps = [word for pair in options.remaps.items() for word in ('-r', ':='.join(pair))]
         run(lambda: CheckSensorsNode(options), [_ROS_ARGS, *remaps, *words[count:]])
@@ -71,14 +72,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
         sys.exit(_check_bag(options.bag, options))
 
 
-def _check_bag(bag: Path, options: CheckOptions) -> int | str:
-    """Return the exit status, or what the bag lacks."""
+def _check_bag(bag: Path, options: CheckOptions) -> int:
+    """Return the exit status: 2, and a line, where the bag cannot be checked."""
     try:
         evidence = bag_evidence(bag, options.spec, options.remaps)
         report = check_sensors(options.spec, evidence, options.limits, options.reliable)
         return tell(report, options)
     except (BagError, OSError) as error:
-        return f'check_sensors: {error}'
+        print(f'check_sensors: {error}', file=sys.stderr)
+        return 2
 
 
 if __name__ == '__main__':

@@ -23,6 +23,11 @@ from hexapod_agent.contract.subject import Subject
 from hexapod_agent.contract.timing import Clock
 from hexapod_agent.observation import ObservationSpec
 
+_READABLE: tuple[Callable[[Subject], Iterator[Finding]], ...] = (
+    shape.check_shape,
+    inertial.check_given,
+    shape.check_finite,
+)
 _ON_NUMBERS: tuple[Callable[[Subject], Iterator[Finding]], ...] = (
     plausibility.check_motion,
     units.check_units,
@@ -68,6 +73,8 @@ def check_sensors(
 def _check_topic(subject: Subject, clocks: list[Clock]) -> tuple[list[Finding], bool]:
     """Check one topic; return the findings, and whether its numbers could be read."""
     found = list(presence.check_publishers(subject))
+    if any(finding.kind == presence.MANY_PUBLISHERS for finding in found):
+        return found, False  # what two of them say by turns is no fault of either
     if not subject.samples:
         return found or list(presence.check_messages(subject)), False
     found += presence.check_messages(subject)
@@ -76,9 +83,10 @@ def _check_topic(subject: Subject, clocks: list[Clock]) -> tuple[list[Finding], 
     found += timing.check_pauses(subject, clocks)
     found += timing.check_rate(subject)
     found += shape.check_frame(subject)
-    unreadable = list(shape.check_shape(subject)) or list(shape.check_finite(subject))
-    if unreadable:
-        return found + unreadable, False
+    for readable in _READABLE:
+        unreadable = list(readable(subject))
+        if unreadable:
+            return found + unreadable, False
     for check in _ON_NUMBERS:
         # The first check that sees a fault knows it best: motion tells rpm from degrees/s.
         seen = {(finding.kind, finding.field) for finding in found}

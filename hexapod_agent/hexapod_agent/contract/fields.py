@@ -26,10 +26,21 @@ _FIELDS: dict[str, tuple[tuple[str, int], ...]] = {
 ACCELERATION = 'linear_acceleration'
 ACCELERATION_COVARIANCE = 'linear_acceleration_covariance'
 ORIENTATION_COVARIANCE = 'orientation_covariance'
+ANGULAR_VELOCITY_COVARIANCE = 'angular_velocity_covariance'
+# What says of an observed field whether the device gives it at all (REP-145).
+COVARIANCES = {
+    'orientation': ORIENTATION_COVARIANCE,
+    'angular_velocity': ANGULAR_VELOCITY_COVARIANCE,
+}
 RANGE_LIMITS = ('min_range', 'max_range')
 # What the agent does not observe but the check needs to judge what it does.
 _FURTHER = {
-    'sensor_msgs/msg/Imu': (ACCELERATION, ACCELERATION_COVARIANCE, ORIENTATION_COVARIANCE),
+    'sensor_msgs/msg/Imu': (
+        ACCELERATION,
+        ACCELERATION_COVARIANCE,
+        ANGULAR_VELOCITY_COVARIANCE,
+        ORIENTATION_COVARIANCE,
+    ),
     'sensor_msgs/msg/Range': RANGE_LIMITS,
 }
 JOINT_TYPE = 'sensor_msgs/msg/JointState'

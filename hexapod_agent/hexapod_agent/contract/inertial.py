@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from hexapod_agent.contract.fields import (
     ACCELERATION,
     ACCELERATION_COVARIANCE,
-    ORIENTATION_COVARIANCE,
+    COVARIANCES,
+    observed_fields,
 )
 from hexapod_agent.contract.finding import Finding
 from hexapod_agent.contract.subject import Subject
@@ -23,14 +24,17 @@ from hexapod_agent.contract.units import conversion, other_unit
 
 _IMU = 'sensor_msgs/msg/Imu'
 # REP-145: the first covariance is -1 where the device does not give the quantity.
-_NOT_GIVEN = -1.0
+NOT_GIVEN = -1.0
 _AXES = 'xyz'
 _STANDARD_ERRORS = 4.0
 
 
 def check_gravity(subject: Subject) -> Iterator[Finding]:
     """Check that an accelerometer at rest reads +9.81 m/s² along z, upwards (REP-145)."""
-    if subject.channel.message_type != _IMU or not _given(subject, ACCELERATION_COVARIANCE):
+    if subject.channel.message_type != _IMU:
+        return
+    if not _given(subject, ACCELERATION_COVARIANCE):
+        yield _unchecked(subject)
         return
     readings = np.nan_to_num(subject.stack(ACCELERATION))
     mean = readings.mean(axis=0)
@@ -46,15 +50,26 @@ def check_gravity(subject: Subject) -> Iterator[Finding]:
         yield _wrong_direction(subject, mean / norm)
 
 
+def check_given(subject: Subject) -> Iterator[Finding]:
+    """Check that nothing that is observed is marked as not measured."""
+    for field in observed_fields(subject.channel):
+        covariance = COVARIANCES.get(field.path)
+        if covariance is not None and not _given(subject, covariance):
+            yield subject.finding(
+                'not_measured',
+                field.path,
+                'is marked as not measured (covariance -1)',
+                'a measured one',
+                'take a device that measures it, or a set without this channel; where the device '
+                'does measure it, let its driver give the covariance, or 0 for an unknown one',
+            )
+
+
 def check_orientation(subject: Subject) -> Iterator[Finding]:
     """Check that quaternions have norm 1 and an upright body, in the order x y z w."""
     if 'orientation' not in subject.channel.readings:
         return
     field, cure = 'orientation', 'fill it from a device with sensor fusion'
-    if not _given(subject, ORIENTATION_COVARIANCE):
-        found = 'is marked as not measured (covariance -1)'
-        yield subject.finding('bad_quaternion', field, found, 'a unit quaternion', cure)
-        return
     q = subject.stack(field)
     with np.errstate(over='ignore'):  # a norm beyond all numbers is not 1 either
         norms = np.linalg.norm(q, axis=1)
@@ -78,7 +93,18 @@ def tilt(q: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _given(subject: Subject, covariance: str) -> bool:
-    return bool(subject.samples[0].values[covariance][0] != _NOT_GIVEN)
+    return all(sample.values[covariance][0] != NOT_GIVEN for sample in subject.samples)
+
+
+def _unchecked(subject: Subject) -> Finding:
+    return subject.finding(
+        'not_measured',
+        ACCELERATION,
+        'is marked as not measured (covariance -1)',
+        'a measured one, to tell whether axes and signs are ours',
+        'see by hand that the device sits with x forward, y left, z up',
+        'note',
+    )
 
 
 def _not_measured(subject: Subject) -> Finding:

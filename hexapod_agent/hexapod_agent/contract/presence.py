@@ -10,6 +10,8 @@ from collections.abc import Iterator
 from hexapod_agent.contract.finding import Finding
 from hexapod_agent.contract.subject import Subject
 
+MANY_PUBLISHERS = 'many_publishers'
+
 
 def check_publishers(subject: Subject) -> Iterator[Finding]:
     """Check that one publisher offers the type, with a quality of service that we can have."""
@@ -25,13 +27,14 @@ def check_publishers(subject: Subject) -> Iterator[Finding]:
         )
         return
     if len(offers) > 1:
-        names = ', '.join(offer.publisher or 'a publisher' for offer in offers)
+        names = ', '.join(offer.publisher for offer in offers if offer.publisher)
         yield subject.finding(
-            'many_publishers',
+            MANY_PUBLISHERS,
             'topic',
-            f'has {len(offers)} publishers ({names})',
+            f'has {len(offers)} publishers{f" ({names})" if names else " by turns"}',
             'one',
-            'give each a topic of its own and remap the agent to the one that it should hear',
+            'stop all of them but one, or give each a topic of its own and remap the agent to the '
+            'one that it should hear',
         )
     yield from _check_types(subject)
     yield from _check_qos(subject)

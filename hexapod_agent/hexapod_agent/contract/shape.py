@@ -50,16 +50,20 @@ def check_finite(subject: Subject) -> Iterator[Finding]:
     """Check that every number is finite."""
     for field in observed_fields(subject.channel):
         broken = ~np.isfinite(subject.stack(field.path))
-        if broken.any():
-            index = int(np.flatnonzero(broken.any(axis=0))[0])
-            count = int(broken.any(axis=1).sum())
-            yield subject.finding(
-                'not_finite',
-                number_name(subject, field.path, index),
-                f'is NaN or infinite in {count} of {len(broken)} messages',
-                'a finite number',
-                'let the driver leave out samples that it could not measure',
-            )
+        if not broken.any():
+            continue
+        # A number that never was finite is not a sample that failed: nothing measures it.
+        never = broken.all(axis=0) if len(broken) > 1 else np.zeros(broken.shape[1], dtype=bool)
+        index = int(np.flatnonzero(never if never.any() else broken.any(axis=0))[0])
+        yield subject.finding(
+            'not_finite',
+            number_name(subject, field.path, index),
+            f'is NaN or infinite in {broken[:, index].sum()} of {len(broken)} messages',
+            'a finite number',
+            _missing_cure(subject, field)
+            if never.any()
+            else 'let the driver leave out samples that it could not measure',
+        )
 
 
 def number_name(subject: Subject, path: str, index: int) -> str:
@@ -85,12 +89,29 @@ def _check_names(subject: Subject) -> Iterator[Finding]:
 
 
 def _wrong_length(subject: Subject, field: Field, found: int, wanted: int) -> Finding:
+    cure = f'let the driver fill all {wanted} numbers'
+    if subject.channel.message_type == JOINT_TYPE:
+        cure = 'let the driver fill the field for every name'
+        if not found:
+            cure += f'; {_missing_cure(subject, field)}'
     return subject.finding(
         'wrong_length',
         field.path,
         f'has {found} numbers',
         f'{wanted}',
-        'let the driver fill the field for every name'
-        if subject.channel.message_type == JOINT_TYPE
-        else f'let the driver fill all {wanted} numbers',
+        cure,
+    )
+
+
+def _missing_cure(subject: Subject, field: Field) -> str:
+    """Return what to do about a field that nothing measures."""
+    if subject.channel.message_type == JOINT_TYPE:
+        return (
+            f"let the hardware export the state interface '{field.path}' of every joint: "
+            'joint_state_broadcaster fills in NaN, or nothing, where there is none; or start the '
+            'driver that measures it'
+        )
+    return (
+        'see whether the device measures it at all, and whether its driver is set up for it; '
+        'or take a set without this channel'
     )

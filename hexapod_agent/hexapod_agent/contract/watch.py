@@ -23,6 +23,7 @@ from hexapod_agent.contract.evidence import Evidence, Sample, TopicEvidence, sam
 from hexapod_agent.contract.fields import (
     ACCELERATION,
     ACCELERATION_COVARIANCE,
+    COVARIANCES,
     JOINT_TYPE,
     checked_paths,
     observed_fields,
@@ -47,6 +48,7 @@ _Check = Callable[[Subject], Iterator[Finding]]
 _IN_ONE_MESSAGE: tuple[_Check, ...] = (
     shape.check_frame,
     shape.check_shape,
+    inertial.check_given,
     shape.check_finite,
     units.check_units,
     inertial.check_orientation,
@@ -68,6 +70,8 @@ class MessageWatch:
         self._limits = limits or Limits()
         self._paths = checked_paths(channel)
         self._fields = observed_fields(channel)
+        paths = [COVARIANCES.get(field.path) for field in self._fields]
+        self._covariances = [path for path in paths if path is not None]
         frames = dict(zip(channel.topics, channel.frames, strict=False))
         self._frame = self._limits.frames.get(topic, frames.get(topic))
         self._force = np.array([0.0, 0.0, GRAVITY])
@@ -108,7 +112,7 @@ class MessageWatch:
                 return False
             if field.path == 'orientation' and not self._is_unit(values):
                 return False
-        return True
+        return all(taken.values[path][0] != inertial.NOT_GIVEN for path in self._covariances)
 
     def _is_unit(self, quaternion: Any) -> bool:
         norm = math.hypot(*quaternion.tolist())

@@ -8,15 +8,24 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 
 from hexapod_agent.contract.limits import Limits, parse_frames
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.observation import CHANNELS, ObservationSpec
+
+from hexapod_doe.bags.location import user_path
 
 DESCRIPTION = (
     'Hold the sensors of a live graph, or of a bag, against what the agent was trained with; '
     'end with status 0 if the robot may walk with them, and with 1 if not.'
 )
+
+
+NAMESPACE = '__ns'
+"""What stands for the namespace in a remapping rule of ROS 2."""
+_OTHER_RULES = ('__node', '__name')
+_TOPICS = tuple(topic for channel in CHANNELS for topic in channel.topics)
 
 
 @dataclass(frozen=True)
@@ -34,11 +43,18 @@ class CheckOptions:
     """File for the outcome, '-' for the standard output, '' for none."""
 
 
-def parse(words: Sequence[str]) -> CheckOptions:
-    """Return what the command line says; ends the process where it is wrong."""
+def parse(words: Sequence[str], ros_words: Sequence[str] = ()) -> CheckOptions:
+    """Return what the command line says; ends the process where it is wrong.
+
+    Args:
+        words: before `--ros-args`.
+        ros_words: after it. A node has them from ROS; for a bag the remappings among them hold.
+    """
     parser = _parser()
     args = parser.parse_args(words)
     try:
+        if args.bag is not None:
+            args.remap += _ros_remaps(ros_words)
         return CheckOptions(
             spec=ObservationSpec(args.observations),
             bag=args.bag,
@@ -58,7 +74,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         '--observations', required=True, metavar='ABCDE', help='set whose sensors are needed'
     )
-    parser.add_argument('--bag', type=Path, metavar='DIR', help='check a bag, not the live graph')
+    parser.add_argument(
+        '--bag', type=user_path, metavar='DIR', help='check a bag, not the live graph'
+    )
     parser.add_argument(
         '--seconds', type=_positive, default=3.0, help='how long to listen (default 3)'
     )
@@ -98,8 +116,38 @@ def _positive(text: str) -> float:
     return value
 
 
+def _ros_remaps(words: Sequence[str]) -> list[str]:
+    """Return the remapping rules among the arguments of ROS.
+
+    Raises:
+        ValueError: there is something else, which would not hold for a bag.
+    """
+    rules, pairs = [], iter(words)
+    for word in pairs:
+        rule = next(pairs, '') if word in ('-r', '--remap') else ''
+        if not rule:
+            raise ValueError(f"'{word}' after --ros-args: expected -r <topic>:=<other> for a bag")
+        rules.append(rule)
+    return rules
+
+
 def _remap(text: str) -> tuple[str, str]:
-    topic, mark, other = text.partition(':=')
-    if not (topic and mark and other):
+    """Return a topic of the sensor table, or __ns, and what stands for it.
+
+    Raises:
+        ValueError: it is no rule, or for a topic that the table has not.
+    """
+    rule, mark, other = text.partition(':=')
+    if not (rule and mark and other):
         raise ValueError(f"remap '{text}': expected <topic>:=<other>")
-    return topic, other
+    if rule == NAMESPACE and not other.startswith('/'):
+        raise ValueError(f"remap '{text}': expected a namespace that begins with '/'")
+    if rule in (NAMESPACE, *_OTHER_RULES):
+        return rule, other
+    name = rule.rpartition(':')[2]  # a rule may be for one node: check_sensors:imu/data:=/imu
+    for topic in _TOPICS:
+        if name == topic or (name.startswith('/') and name.endswith(f'/{topic}')):
+            return topic, other
+    near = get_close_matches(name, _TOPICS, n=1)
+    hint = f"did you mean '{near[0]}'?" if near else f'expected one of {", ".join(_TOPICS)}'
+    raise ValueError(f"remap '{text}': the sensor table has no topic '{name}', {hint}")

@@ -51,6 +51,7 @@ def healthy_values(topic: str, seconds: float) -> dict[str, np.ndarray]:
         values |= {
             'linear_acceleration': np.array([0.2, -0.1, GRAVITY]),
             'linear_acceleration_covariance': np.zeros(9),
+            'angular_velocity_covariance': np.zeros(9),
             'orientation_covariance': np.zeros(9),
         }
     return values

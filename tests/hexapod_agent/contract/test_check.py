@@ -76,7 +76,15 @@ def test_another_type_is_named(robot) -> None:
 def test_two_publishers_on_one_topic_are_named(robot) -> None:
     offers = (Offer('/sim', 'sensor_msgs/msg/Imu'), Offer('/bno055', 'sensor_msgs/msg/Imu'))
     robot.change('imu/data', lambda had: replace(had, offers=offers))
-    named(robot.fault(), 'many_publishers', 'topic', '/sim, /bno055', 'remap')
+    named(robot.fault(), 'many_publishers', 'topic', '/sim, /bno055', 'stop all of them but one')
+
+
+def test_what_two_publishers_say_by_turns_is_no_further_fault(robot) -> None:
+    """The frame of the second driver must not be accepted: the driver must go."""
+    offers = (Offer('/sim', 'sensor_msgs/msg/Imu'), Offer('/bno055', 'sensor_msgs/msg/Imu'))
+    robot.change('imu/data', lambda had: replace(had, offers=offers))
+    robot.each('imu/data', lambda sample: replace(sample, frame='bno055', stamp_ns=0))
+    named(robot.fault(), 'many_publishers', 'topic')
 
 
 def test_best_effort_suits_realtime_and_not_lock_step(robot) -> None:
@@ -165,7 +173,8 @@ def test_wrong_joint_names_are_named(robot) -> None:
 )
 def test_a_wrong_length_is_named(robot, topic: str, path: str, length: int) -> None:
     robot.values(topic, path, lambda values: values[:length])
-    named(robot.fault(), 'wrong_length', path, f'has {length} numbers', 'fill')
+    cure = 'fill' if length else "the state interface 'effort'"
+    named(robot.fault(), 'wrong_length', path, f'has {length} numbers', cure)
 
 
 @pytest.mark.parametrize(
@@ -185,7 +194,14 @@ def test_numbers_that_are_not_finite_are_named(robot, topic, path, field, value:
         return changed
 
     robot.values(topic, path, broken)
-    named(robot.fault(), 'not_finite', field, 'in 80 of 80 messages', 'leave out')
+    cure = "the state interface 'velocity'" if topic == 'joint_states' else 'measures it at all'
+    named(robot.fault(), 'not_finite', field, 'in 80 of 80 messages', cure)
+
+
+def test_numbers_that_are_missing_now_and_then_are_named(robot) -> None:
+    values = iter([np.nan, np.inf] + 78 * [0.0])
+    robot.values('imu/data_raw', 'angular_velocity', lambda v: v + next(values))
+    named(robot.fault(), 'not_finite', 'angular_velocity[0]', 'in 2 of 80 messages', 'leave out')
 
 
 def test_one_report_holds_several_faults(robot) -> None:

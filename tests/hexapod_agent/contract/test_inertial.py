@@ -42,7 +42,9 @@ def test_an_acceleration_that_is_marked_as_not_given_is_not_judged(robot) -> Non
     robot.values('imu/data', 'linear_acceleration', np.zeros_like)
     assert [finding.kind for finding in robot.report().findings] == ['not_measured']
     robot.values('imu/data', 'linear_acceleration_covariance', lambda c: c - 1.0)
-    assert robot.report().findings == ()
+    (note,) = robot.report().findings
+    assert (note.kind, note.level) == ('not_measured', 'note')
+    assert 'by hand' in note.cure
 
 
 @pytest.mark.parametrize(
@@ -61,9 +63,21 @@ def test_a_bad_quaternion_is_named(robot, change, words: str) -> None:
     assert words in str(fault)
 
 
-def test_an_orientation_that_is_not_measured_is_named(robot) -> None:
-    robot.values('imu/data', 'orientation_covariance', lambda c: c - 1.0)
-    assert 'not measured' in robot.fault().found
+@pytest.mark.parametrize(
+    ('topic', 'field'), [('imu/data', 'orientation'), ('imu/data_raw', 'angular_velocity')]
+)
+def test_what_is_observed_and_not_measured_is_a_fault(robot, topic: str, field: str) -> None:
+    robot.values(topic, f'{field}_covariance', lambda c: c - 1.0)
+    robot.values(topic, field, np.zeros_like)
+    fault = robot.fault()
+    assert (fault.kind, fault.field) == ('not_measured', field)
+    assert 'marked as not measured (covariance -1)' in fault.found
+
+
+def test_what_is_not_measured_and_not_observed_does_not_matter(robot) -> None:
+    robot.values('imu/data', 'angular_velocity_covariance', lambda c: c - 1.0)
+    robot.values('imu/data_raw', 'orientation_covariance', lambda c: c - 1.0)
+    assert robot.report().findings == ()
 
 
 def test_tilt_is_the_angle_of_a_roll_or_pitch_and_not_of_a_yaw() -> None:

@@ -21,8 +21,10 @@ from sensor_msgs.msg import Imu, JointState
 TABLE = {topic: channel for channel in CHANNELS for topic in channel.topics}
 
 
-def imu(z: float = GRAVITY, frame: str = 'imu_link', w: float = 1.0) -> Imu:
+def imu(z: float = GRAVITY, frame: str = 'imu_link', w: float = 1.0, unmeasured: str = '') -> Imu:
     message = Imu(orientation=Quaternion(w=w), linear_acceleration=Vector3(z=z))
+    if unmeasured:
+        getattr(message, f'{unmeasured}_covariance')[0] = -1.0
     message.header.frame_id = frame
     return message
 
@@ -42,7 +44,13 @@ def test_what_the_sim_publishes_passes(sensor) -> None:
 
 @pytest.mark.parametrize(
     ('message', 'kind'),
-    [(imu(frame='x'), 'wrong_frame'), (imu(w=0.5), 'bad_quaternion'), (imu(), None)],
+    [
+        (imu(frame='x'), 'wrong_frame'),
+        (imu(w=0.5), 'bad_quaternion'),
+        (imu(unmeasured='orientation'), 'not_measured'),
+        (imu(unmeasured='angular_velocity'), None),  # imu/data_raw has it for the agent
+        (imu(), None),
+    ],
 )
 def test_a_broken_message_is_named(message: Imu, kind: str | None) -> None:
     found = watch('imu/data').check(message)
