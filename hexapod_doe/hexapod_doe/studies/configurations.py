@@ -1,0 +1,271 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Study of the learner: train a table of configurations with sets of sensors and common seeds.
+
+    python -m hexapod_doe.studies.configurations search.yaml --out runs/search
+
+reads factors, rows, sets and seeds from a YAML file, trains each combination in a process of its
+own, and appends to results.csv how its agent does without noise, from starts that no training has.
+What is cut goes on from its checkpoint; what the table holds is not repeated.
+"""
+
+import argparse
+import csv
+import fcntl
+import itertools
+import json
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+from hexapod_agent.config import AgentConfig, ConfigError
+from hexapod_agent.env import HexapodLine
+from hexapod_agent.evaluation import Evaluation, run_episode, summarize
+from hexapod_agent.observation import ObservationSpec, parse_observations
+from hexapod_agent.policies import trained_policy
+from hexapod_agent.provenance import provenance
+from hexapod_agent.train import train_episode
+from hexapod_agent.training import Trainer
+from pydantic import PositiveInt, TypeAdapter, ValidationError
+
+from hexapod_agent import checkpoint
+
+RESULTS = 'results.csv'
+NONE = 'none'  # the set of no optional sensor, in the table and on the command line
+JUDGEMENT_SEED = 1  # of the starts, as `evaluate` has it; no training may have it
+
+
+@dataclass(frozen=True)
+class Factor:
+    """What the two levels of a factor set: values by 'section.key' of a configuration."""
+
+    low: dict[str, Any]
+    high: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Study:
+    """What to train.
+
+    Attributes:
+        sets: Letters of each set of sensors.
+        seeds: Common to all sets and rows; 1 is that of the judgement.
+        episodes: Length of each training.
+        judged_after: Episodes after which the agent is evaluated; the last one always is.
+        starts: Of an evaluation.
+        config: File of changes to article.yaml that all rows have, beside the study's file.
+        base: Values by 'section.key' that all rows have.
+        factors: By name.
+        rows: A sign per factor; one row without factors is the base itself.
+    """
+
+    sets: tuple[str, ...]
+    seeds: tuple[PositiveInt, ...]
+    episodes: PositiveInt
+    judged_after: tuple[PositiveInt, ...] = ()
+    starts: PositiveInt = 20
+    config: str | None = None
+    base: dict[str, Any] = field(default_factory=dict)
+    factors: dict[str, Factor] = field(default_factory=dict)
+    rows: tuple[str, ...] = ('',)
+
+    @classmethod
+    def load(cls, path: Path) -> 'Study':
+        """Read and check a study's file.
+
+        Raises:
+            ConfigError: It is missing or no study, or a row's configuration cannot be used.
+        """
+        if not path.is_file():
+            raise ConfigError(f'study {str(path)!r} not found, expected a YAML file')
+        try:
+            study = TypeAdapter(cls).validate_python(yaml.safe_load(path.read_text('utf-8')))
+        except (yaml.YAMLError, ValidationError) as error:
+            raise ConfigError(f'study {str(path)!r}: {error}') from error
+        if study.config:
+            study = replace(study, config=str(path.parent / study.config))
+        study._check(path)
+        return study
+
+    def _check(self, path: Path) -> None:
+        """Refuse what would not train, before anything does."""
+        if JUDGEMENT_SEED in self.seeds:
+            raise ConfigError(
+                f'study {str(path)!r}: seed {JUDGEMENT_SEED} is that of the starts that agents '
+                'are judged from, expected others'
+            )
+        for row in self.rows:
+            if len(row) != len(self.factors) or set(row) - {'+', '-'}:
+                raise ConfigError(
+                    f'study {str(path)!r}: row {row!r}, expected {len(self.factors)} signs + or '
+                    '-, one for each factor'
+                )
+            self.configuration(row)
+        for sensors in self.sets:
+            parse_observations(_letters(sensors))
+
+    def values(self, row: str) -> dict[str, Any]:
+        """Values by 'section.key' that make a row."""
+        levels = [
+            factor.high if sign == '+' else factor.low
+            for factor, sign in zip(self.factors.values(), row, strict=True)
+        ]
+        return {key: value for level in (self.base, *levels) for key, value in level.items()}
+
+    def configuration(self, row: str) -> AgentConfig:
+        """Build what a row trains with; its length is that of the trainings."""
+        changes: dict[str, Any] = {}
+        for key, value in self.values(row).items():
+            section, _, name = key.partition('.')
+            changes.setdefault(section, {})[name] = value
+        config = AgentConfig.load(self.config).changed(changes, f'row {row!r}')
+        return config.changed({'training': {'episodes': self.episodes}}, 'episodes')
+
+    def runs(self) -> list['Run']:
+        """Every training, those of a seed together."""
+        combinations = itertools.product(self.seeds, self.rows, self.sets)
+        return [Run(row, letters, seed) for seed, row, letters in combinations]
+
+
+@dataclass(frozen=True)
+class Run:
+    """One training of a study."""
+
+    row: str
+    sensors: str
+    seed: int
+
+
+class Training:
+    """A run as it is trained, with its processor time and what was found of it so far."""
+
+    def __init__(self, study: Study, run: Run, out: Path) -> None:
+        self._study, self._run, self._out = study, run, out
+        config = study.configuration(run.row)
+        signs = run.row.replace('+', 'p').replace('-', 'm')
+        self._path = out / f'{signs}_{run.sensors}_{run.seed}.pt'
+        self._notes = self._path.with_suffix('.json')
+        self._lines: list[dict[str, Any]] = []
+        self._seconds = 0.0
+        if self._notes.exists():
+            self._trainer = checkpoint.load(self._path, to_resume=True)
+            notes = json.loads(self._notes.read_text())[str(self._trainer.episode)]
+            self._lines, self._seconds = notes
+        else:
+            self._trainer = Trainer(ObservationSpec(_letters(run.sensors)), config, run.seed)
+        self._env = HexapodLine(self._trainer.spec.letters, config)
+
+    def train(self) -> None:
+        """Train to the end, and write the lines of the table and the agent."""
+        trainer, study = self._trainer, self._study
+        while trainer.episode < study.episodes:
+            before = time.process_time()
+            train_episode(self._env, trainer)
+            self._seconds += time.process_time() - before
+            if trainer.episode in (*study.judged_after, study.episodes):
+                self._lines.append(self._line(self._judge()))
+            if trainer.episode % trainer.config.training.checkpoint_every == 0:
+                self._keep()
+        _append(self._out / RESULTS, self._lines)
+        checkpoint.save(self._path, trainer, to_resume=False)
+        self._notes.unlink(missing_ok=True)
+
+    def _keep(self) -> None:
+        """Take a checkpoint; the notes know the one before as well, lest a crash part them."""
+        old = json.loads(self._notes.read_text()) if self._notes.exists() else {}
+        newest = {str(self._trainer.episode): (self._lines, self._seconds)}
+        self._notes.write_text(json.dumps(dict(list(old.items())[-1:]) | newest))
+        checkpoint.save(self._path, self._trainer, to_resume=True)
+
+    def _judge(self) -> Evaluation:
+        policy = trained_policy(self._trainer.agent)
+        env = HexapodLine(self._trainer.spec.letters, self._trainer.config)
+        starts = range(self._study.starts)
+        return summarize([run_episode(env, policy, JUDGEMENT_SEED, start) for start in starts])
+
+    def _line(self, found: Evaluation) -> dict[str, Any]:
+        run, config = self._run, self._trainer.config.to_mapping()
+        keys = {key for row in self._study.rows for key in self._study.values(row)}
+        values = {key: config[key.split('.')[0]][key.split('.')[1]] for key in sorted(keys)}
+        return {'row': run.row, **values, 'sensors': run.sensors, 'seed': run.seed} | {
+            'episode': self._trainer.episode,
+            'starts': found.starts,
+            'return': round(found.final_average_reward, 1),
+            'offset': round(found.mean_offset, 4),
+            'speed': round(found.speed, 4),
+            'falls': found.falls,
+            'training_return': round(float(np.mean(self._trainer.returns[-20:])), 1),
+            'cpu_s': round(self._seconds, 2),
+            'commit': provenance()['git_commit'][:9],
+        }
+
+
+def _letters(sensors: str) -> str:
+    return '' if sensors == NONE else sensors
+
+
+def _append(path: Path, lines: list[dict[str, Any]]) -> None:
+    """Add lines to a table that other processes add to as well."""
+    with path.open('a', newline='') as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        writer = csv.DictWriter(file, lines[0], lineterminator='\n')
+        if not file.tell():
+            writer.writeheader()
+        writer.writerows(lines)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def _held(path: Path) -> set[Run]:
+    """Runs whose lines the table holds."""
+    if not path.exists():
+        return set()
+    with path.open(newline='') as file:
+        return {Run(r['row'], r['sensors'], int(r['seed'])) for r in csv.DictReader(file)}
+
+
+def main(args: Sequence[str] | None = None) -> None:
+    """Train what is missing."""
+    parser = _parser()
+    options = parser.parse_args(args)
+    try:
+        study = Study.load(options.study)
+    except ValueError as error:  # configuration or observations
+        parser.error(str(error))
+    options.out.mkdir(parents=True, exist_ok=True)
+    held = _held(options.out / RESULTS)
+    missing = [number for number, run in enumerate(study.runs()) if run not in held]
+    if options.only is not None:
+        Training(study, study.runs()[options.only], options.out).train()
+        return
+
+    def start(number: int) -> None:
+        command = [sys.executable, '-m', 'hexapod_doe.studies.configurations', options.study]
+        arguments = ['--out', options.out, '--only', str(number)]
+        subprocess.run([*command, *arguments], check=True)
+
+    with ThreadPoolExecutor(options.jobs) as pool:
+        list(pool.map(start, missing))
+    print(f'{options.out / RESULTS}: {len(study.runs())} trainings')
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog='configurations', description=__doc__)
+    parser.add_argument('study', type=Path, help='YAML file: see docs/learning.md')
+    parser.add_argument('--out', type=Path, required=True, help='directory of table and agents')
+    parser.add_argument('--jobs', type=int, default=2, help='runs side by side (default 2)')
+    parser.add_argument('--only', type=int, help=argparse.SUPPRESS)  # one run, in this process
+    return parser
+
+
+if __name__ == '__main__':
+    main()
