@@ -6,9 +6,11 @@
 from __future__ import annotations
 
 import math
+from importlib.resources import files
 
 import pytest
 import torch
+import yaml
 from hexapod_agent.agent_node import AgentNode
 from hexapod_agent.config import AgentConfig
 from hexapod_agent.env import HexapodLine
@@ -31,6 +33,18 @@ def short(tmp_path) -> str:
     """Return a configuration of short episodes and small batches."""
     path = tmp_path / 'short.yaml'
     path.write_text('task: {time_limit_steps: 60}\nddpg: {batch_size: 32, update_every: 6}\n')
+    return str(path)
+
+
+@pytest.fixture
+def swift(tmp_path) -> str:
+    """Return swift.yaml with short episodes and small batches."""
+    changes = yaml.safe_load((files('hexapod_agent') / 'swift.yaml').read_text())
+    changes['task'] = {'time_limit_steps': 60}
+    changes['ddpg'] |= {'batch_size': 32, 'update_every': 8}
+    changes['training']['episodes'] = 3
+    path = tmp_path / 'swift.yaml'
+    path.write_text(yaml.safe_dump(changes))
     return str(path)
 
 
@@ -68,9 +82,11 @@ def test_the_topic_graph_is_the_treatment(graph, short: str, letters: str, topic
         assert (result.late, result.missing, result.duplicate, result.out_of_order) == (0, 0, 0, 0)
 
 
+@pytest.mark.parametrize('name', ['short', 'swift'])
 def test_a_seed_gives_the_same_weights_on_the_graph_and_in_the_environment(
-    graph, short: str
+    graph, request, name: str
 ) -> None:
+    path = request.getfixturevalue(name)
     trainers: list[Trainer] = []
 
     def make_trainer(*args) -> Trainer:
@@ -78,9 +94,9 @@ def test_a_seed_gives_the_same_weights_on_the_graph_and_in_the_environment(
         return trainers[0]
 
     graph.add(SimNode(), CpgNode(), AgentNode(make_trainer))
-    goal = TrainRun.Goal(run_id='r', observations='ABCDE', seed=7, episodes=3, config=short)
+    goal = TrainRun.Goal(run_id='r', observations='ABCDE', seed=7, episodes=3, config=path)
     response = graph.train(goal)
-    config = AgentConfig.load(short)
+    config = AgentConfig.load(path)
     alone = Trainer(ObservationSpec('ABCDE'), config, 7)
     env = HexapodLine('ABCDE', config)
     for _ in range(3):

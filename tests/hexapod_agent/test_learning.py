@@ -1,7 +1,9 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""A short training with the default configuration already steers; minutes, so run on demand."""
+"""A short training already steers, by each configuration; minutes, so run on demand."""
+
+from importlib.resources import files
 
 import numpy as np
 import pytest
@@ -13,7 +15,7 @@ from hexapod_agent.policies import Policy, constant_policy, trained_policy
 from hexapod_agent.train import train_episode
 from hexapod_agent.training import Trainer
 
-EPISODES, STARTS = 60, 10
+STARTS = 10
 
 
 def evaluate(env: HexapodLine, policy: Policy) -> Evaluation:
@@ -22,11 +24,12 @@ def evaluate(env: HexapodLine, policy: Policy) -> Evaluation:
 
 @pytest.mark.slow
 @pytest.mark.timeout(3600)
-def test_short_training_steers_and_the_constant_action_does_not():
-    config = AgentConfig.load()
+@pytest.mark.parametrize(('name', 'episodes'), [('article.yaml', 60), ('swift.yaml', 100)])
+def test_short_training_steers_and_the_constant_action_does_not(name, episodes):
+    config = AgentConfig.load(str(files('hexapod_agent') / name))
     env = HexapodLine('ABCDE', config)
     trainer = Trainer(ObservationSpec('ABCDE'), config, seed=1)
-    summaries = [train_episode(env, trainer) for _ in range(EPISODES)]
+    summaries = [train_episode(env, trainer) for _ in range(episodes)]
     learned = evaluate(env, trained_policy(trainer.agent))
     constant = evaluate(env, constant_policy(np.zeros(30, np.float32)))
     assert learned.mean_offset < 0.5 * constant.mean_offset
