@@ -26,18 +26,20 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import yaml
 from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.evaluation import Evaluation, run_episode, summarize
-from hexapod_agent.observation import ObservationSpec, parse_observations
-from hexapod_agent.policies import trained_policy
+from hexapod_agent.observation import ACTION_SIZE, ObservationSpec, parse_observations
+from hexapod_agent.policies import Policy, constant_policy, trained_policy
 from hexapod_agent.provenance import provenance
 from hexapod_agent.train import train_episode
 from hexapod_agent.training import Trainer
 from pydantic import PositiveInt, TypeAdapter, ValidationError
 
 from hexapod_agent import checkpoint
+from hexapod_doe.studies.configuration_tables import effects, figures
 
 RESULTS = 'results.csv'
 NONE = 'none'  # the set of no optional sensor, in the table and on the command line
@@ -187,10 +189,8 @@ class Training:
         checkpoint.save(self._path, self._trainer, to_resume=True)
 
     def _judge(self) -> Evaluation:
-        policy = trained_policy(self._trainer.agent)
         env = HexapodLine(self._trainer.spec.letters, self._trainer.config)
-        starts = range(self._study.starts)
-        return summarize([run_episode(env, policy, JUDGEMENT_SEED, start) for start in starts])
+        return _evaluation(env, trained_policy(self._trainer.agent), self._study.starts)
 
     def _line(self, found: Evaluation) -> dict[str, Any]:
         run, config = self._run, self._trainer.config.to_mapping()
@@ -255,7 +255,25 @@ def main(args: Sequence[str] | None = None) -> None:
 
     with ThreadPoolExecutor(options.jobs) as pool:
         list(pool.map(start, missing))
-    print(f'{options.out / RESULTS}: {len(study.runs())} trainings')
+    _report(study, options.out / RESULTS)
+
+
+def _report(study: Study, path: Path) -> None:
+    """Print what the table says; an agent that earns less than the zero action has failed."""
+    results = pd.read_csv(path, keep_default_na=False)
+    zero = constant_policy(np.zeros(ACTION_SIZE, np.float32))
+    env = HexapodLine('', study.configuration(study.rows[0]))
+    failure = _evaluation(env, zero, study.starts).final_average_reward
+    print(f'{path}; failed: less than {failure:.1f}, the zero action from the same starts')
+    tables = [figures(results, failure)]
+    if study.factors:
+        tables.append(effects(results, list(study.factors)))
+    for table in tables:
+        print(table.to_string(index=False, float_format='{:.3f}'.format, na_rep=''))
+
+
+def _evaluation(env: HexapodLine, policy: Policy, starts: int) -> Evaluation:
+    return summarize([run_episode(env, policy, JUDGEMENT_SEED, start) for start in range(starts)])
 
 
 def _parser() -> argparse.ArgumentParser:

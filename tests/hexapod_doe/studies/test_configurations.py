@@ -56,9 +56,10 @@ def test_a_row_is_the_levels_of_its_factors(write):
     assert (config.task.time_limit_steps, config.training.episodes) == (8, 3)
 
 
-def test_study_leaves_its_table_and_is_not_repeated(write, tmp_path, monkeypatch):
+def test_study_leaves_its_table_and_is_not_repeated(write, tmp_path, monkeypatch, capsys):
     arguments = [str(write(rows=['+-'])), '--out', str(tmp_path / 'out')]
     configurations.main(arguments)
+    assert 'failed: less than' in capsys.readouterr().out
     table = pd.read_csv(tmp_path / 'out' / 'results.csv')
     assert sorted(zip(table['sensors'], table['episode'], strict=True)) == [
         ('C', 2), ('C', 3), (NONE, 2), (NONE, 3),
