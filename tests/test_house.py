@@ -18,6 +18,11 @@ MAY_IMPORT = {
 }
 OURS = {*MAY_IMPORT, 'hexapod_bringup'}
 FILES = [file for name in MAY_IMPORT for file in sorted((ROOT / name / name).rglob('*.py'))]
+SHARED = [
+    file
+    for name in ('hexapod_node', 'hexapod_bringup')
+    for file in sorted((ROOT / 'ros_ws' / 'src' / name / name).rglob('*.py'))
+]
 # Besides the nodes: what turns numbers into messages, the agent's side of a graph run, and what
 # the recorder hears.
 TOUCHES_ROS = {
@@ -87,3 +92,10 @@ def test_the_environment_is_judged_before_rclpy_is_loaded(file: Path) -> None:
 @pytest.mark.parametrize('file', FILES, ids=name)
 def test_files_stay_readable(file: Path) -> None:
     assert len(file.read_text(encoding='utf-8').splitlines()) <= 300
+
+
+@pytest.mark.parametrize('file', [*FILES, *SHARED], ids=name)
+def test_no_node_has_a_timer_of_rclpy(file: Path) -> None:
+    """They stop for ever after a pause of the process (docs/upstream.md)."""
+    assert 'create_timer(' not in file.read_text(encoding='utf-8')
+    assert 'create_rate(' not in file.read_text(encoding='utf-8')

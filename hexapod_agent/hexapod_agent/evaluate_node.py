@@ -9,7 +9,6 @@ import os
 import time
 from collections import defaultdict, deque
 from collections.abc import Iterator
-from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -21,16 +20,14 @@ from hexapod_node.conditions import until_true
 from hexapod_node.coroutines import start, until
 from hexapod_node.matching import unheard
 from hexapod_node.qos import LOCK_STEP
-from hexapod_node.session import begin
+from hexapod_node.spin import serving, spin_once
 from hexapod_node.stamps import to_nanoseconds
 from hexapod_sim.sim_node import SimNode
 from nav_msgs.msg import Odometry
 from rclpy.action import ActionClient
 from rclpy.executors import Executor
-from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.node import Node
 from rclpy.task import Future
-from rclpy.utilities import try_shutdown
 
 from hexapod_agent.agent_node import AgentNode
 from hexapod_agent.evaluation import Episode, EpisodeMeter, GraphError
@@ -117,39 +114,26 @@ def episodes_on_graph(checkpoint: Path, starts: int, seed: int) -> Iterator[Epis
     goal = TrainRun.Goal(
         run_id='evaluation', checkpoint=str(checkpoint.resolve()), seed=seed, episodes=starts
     )
-    with _graph() as (executor, sim, node):
+    with serving(_make_nodes, f'/evaluate_{os.getpid()}') as (executor, (sim, _, _, node)):
         played = start(node.play(goal, sim))
         for count in range(starts):
             if not _spin_until_heard(executor, node, played):
                 raise GraphError(f'{count} of {starts} episodes arrived whole, expected all')
             yield node.episodes.popleft()
         while not played.done():  # or the agent would be stopped amid its last words
-            executor.spin_once(timeout_sec=_POLL_S)
+            spin_once(executor, _POLL_S)
 
 
-@contextmanager
-def _graph() -> Iterator[tuple[Executor, SimNode, EvaluationNode]]:
-    """Keep the nodes of a worker, without recorder, for as long as the context lasts."""
-    begin(['--ros-args', '-r', f'__ns:=/evaluate_{os.getpid()}'])
-    executor = EventsExecutor()
-    sim, node = SimNode(), EvaluationNode()
-    nodes = (sim, CpgNode(), AgentNode(), node)
-    for each in nodes:
-        executor.add_node(each)
-    try:
-        yield executor, sim, node
-    finally:
-        executor.shutdown()
-        for each in reversed(nodes):
-            each.destroy_node()
-        try_shutdown()
+def _make_nodes() -> tuple[SimNode, CpgNode, AgentNode, EvaluationNode]:
+    """Make a worker without recorder, and who evaluates it."""
+    return SimNode(), CpgNode(), AgentNode(), EvaluationNode()
 
 
 def _spin_until_heard(executor: Executor, node: EvaluationNode, played: Future) -> bool:
     """Serve the nodes until the next episode is there; False if the run ended without it."""
     ended_at = None
     while not node.episodes:
-        executor.spin_once(timeout_sec=_POLL_S)
+        spin_once(executor, _POLL_S)
         if played.done():
             played.result()
             ended_at = ended_at or time.monotonic()

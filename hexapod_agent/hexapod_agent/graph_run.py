@@ -16,10 +16,10 @@ import yaml
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import EpisodeResult
 from hexapod_node.conditions import until_true
-from hexapod_node.coroutines import STEADY
 from hexapod_node.matching import listening_nodes, unheard
 from hexapod_node.stamps import time_message
 from hexapod_node.subscriptions import subscribed_topics
+from hexapod_node.timers import call_every
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from hexapod_sim.task import episode_seed
 
@@ -67,11 +67,11 @@ class GraphRun:
         self._episode = 0
         self._last_ns = 0
         """End of the episodes that were carried over; simulated time goes on from there."""
-        self._life = node.create_timer(_LIFE_S, self._give_sign_of_life, clock=STEADY)
+        self._life = call_every(node, _LIFE_S, self._give_sign_of_life)
 
     def destroy(self) -> None:
         """Unsubscribe from every topic of the run, and close its curves."""
-        self._node.destroy_timer(self._life)
+        self._life.cancel()
         self._loop.destroy()
         if self._events is not None:
             self._events.close()

@@ -16,11 +16,12 @@ from typing import Any
 from diagnostic_msgs.msg import DiagnosticStatus
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import CampaignStatus
-from hexapod_node.coroutines import STEADY, sleep, start
+from hexapod_node.coroutines import sleep, start
 from hexapod_node.diagnostics import Diagnostics, Health
 from hexapod_node.parameters import Parameter, declare
 from hexapod_node.qos import LATCHED
 from hexapod_node.spin import run
+from hexapod_node.timers import call_every
 from rclpy.action import ActionClient, get_action_names_and_types
 from rclpy.node import Node
 from rclpy.task import Future
@@ -109,7 +110,7 @@ class ManagerNode(Node):
             self._parameter('worker_command'),
             self._campaign.directory / 'logs',
         )
-        self.create_timer(_TICK_S, self._on_tick, clock=STEADY)
+        call_every(self, _TICK_S, self._on_tick)
         self._publish_status()
         Diagnostics(self, self._health)
 

@@ -16,8 +16,7 @@ from hexapod_node.parameters import Parameter, declare
 from hexapod_node.raw_topics import message_class, replay_qos
 from hexapod_node.spin import run
 from hexapod_node.stamps import time_message
-from rclpy.clock import Clock as RclpyClock
-from rclpy.clock import ClockType
+from hexapod_node.timers import Timer, call_later
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.parameter import Parameter as RclpyParameter
@@ -34,7 +33,6 @@ CLOCK_TOPIC = '/clock'
 CLOCK_TYPE = 'rosgraph_msgs/msg/Clock'
 # Longest that the end of playback waits until its readers have everything.
 _DRAIN = Duration(seconds=5)
-_IDLE_NS = 3_600_000_000_000
 
 PARAMETERS = (
     Parameter('bag', '', 'Directory of the bag, or one .mcap file.'),
@@ -97,8 +95,7 @@ class PlayerNode(Node):
         self.create_service(Trigger, '~/pause', self._on_pause)
         self.create_service(Trigger, '~/resume', self._on_resume)
         self.create_service(Trigger, '~/step', self._on_step)
-        steady = RclpyClock(clock_type=ClockType.STEADY_TIME)
-        self._timer = self.create_timer(0.0, self._on_due, clock=steady)
+        self._timer: Timer = call_later(self, 0.0, self._on_due)
         Diagnostics(self, self._health)
 
     def _value(self, name: str) -> Any:
@@ -132,20 +129,20 @@ class PlayerNode(Node):
 
     def _on_due(self) -> None:
         """Publish what is due, then sleep until the next is; a damaged bag ends it."""
+        self._timer.cancel()
         wait_ns = self._playback.wait_ns(time.monotonic_ns())
         if wait_ns == 0:
             try:
                 self._publish(self._playback.take())
             except BagError as error:
                 self.get_logger().error(f'{error}; {self._played} messages were played')
-                self._timer.cancel()
                 self.exit_status = 1
                 return
             wait_ns = self._playback.wait_ns(time.monotonic_ns())
         if notice := self._pauses.notice(wait_ns):
             self.get_logger().warning(notice)
-        self._timer.timer_period_ns = _IDLE_NS if wait_ns is None else max(1, wait_ns)
-        self._timer.reset()
+        if wait_ns is not None:
+            self._timer = call_later(self, wait_ns * 1e-9, self._on_due)
 
     def _publish(self, frame: Frame) -> None:
         for message in frame.messages:

@@ -11,8 +11,7 @@ from __future__ import annotations
 
 import os
 from collections import defaultdict
-from collections.abc import Collection, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 from hexapod_agent.agent_node import AgentNode
@@ -26,15 +25,12 @@ from hexapod_node.coroutines import start, until
 from hexapod_node.matching import unheard
 from hexapod_node.qos import LOCK_STEP
 from hexapod_node.raw_topics import message_class
-from hexapod_node.session import begin
+from hexapod_node.spin import serving, spin_once
 from hexapod_node.stamps import time_message, to_nanoseconds
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.action import ActionClient
-from rclpy.executors import Executor
-from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.node import Node
-from rclpy.utilities import try_shutdown
 from trajectory_msgs.msg import JointTrajectory
 
 from hexapod_doe.bags.bag_file import BagFile
@@ -187,31 +183,12 @@ def shadow_on_graph(path: Path, checkpoint: Path, episode: int | None) -> list[C
     spans = recorded_episodes(bag, Series(bag, COMMAND))
     if episode is not None:
         spans = [episode_of(episode, spans, bag)]
-    with _graph(bag, spans, spec) as (executor, node):
+    with serving(
+        lambda: (ShadowNode(bag, spans, spec), AgentNode()), f'/shadow_{os.getpid()}'
+    ) as (executor, (node, _)):
         played = start(node.play(checkpoint))
         while not played.done():
-            executor.spin_once(timeout_sec=_POLL_S)
+            spin_once(executor, _POLL_S)
         played.result()
         answers = zip(spans, node.answers, strict=True)
         return [compare(span.episode, found) for span, found in answers]
-
-
-@contextmanager
-def _graph(
-    bag: BagFile, spans: Sequence[Span], spec: ObservationSpec
-) -> Iterator[tuple[Executor, ShadowNode]]:
-    """Keep agent and stand-in for as long as the context lasts."""
-    begin(['--ros-args', '-r', f'__ns:=/shadow_{os.getpid()}'])
-    executor = EventsExecutor()
-    nodes: list[Node] = []
-    try:
-        shadow = ShadowNode(bag, spans, spec)
-        nodes += [shadow, AgentNode()]
-        for node in nodes:
-            executor.add_node(node)
-        yield executor, shadow
-    finally:
-        executor.shutdown()
-        for node in reversed(nodes):
-            node.destroy_node()
-        try_shutdown()

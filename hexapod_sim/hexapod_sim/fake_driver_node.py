@@ -13,13 +13,13 @@ from typing import Any
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticStatus
 from hexapod_interfaces.msg import LineOffset
-from hexapod_node.coroutines import STEADY
 from hexapod_node.diagnostics import Diagnostics, Health
 from hexapod_node.parameters import Parameter, declare
 from hexapod_node.qos import DRIVER, LOCK_STEP
 from hexapod_node.spin import run
 from hexapod_node.stamps import time_message, to_nanoseconds
 from hexapod_node.sync import LOCKSTEP, REALTIME
+from hexapod_node.timers import call_every
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter as RclpyParameter
@@ -149,7 +149,7 @@ class FakeDriverNode(Node):
             self._outlets.append(outlet)
         self.add_on_set_parameters_callback(self._on_set)
         if lock_step:
-            self.create_timer(_FLUSH_PERIOD_S, self._flush, clock=STEADY)
+            call_every(self, _FLUSH_PERIOD_S, self._flush)
         Diagnostics(self, self._health, hardware=f'fake {self._device.channel}')
 
     @property

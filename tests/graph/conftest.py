@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 import pytest
 import rclpy
 from hexapod_interfaces.action import TrainRun
+from hexapod_node.spin import spin_once
 from rclpy.action import ActionClient
 from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.node import Node
@@ -36,7 +37,7 @@ class Graph:
         deadline = time.monotonic() + timeout_s
         while not predicate():
             assert time.monotonic() < deadline, f'not within {timeout_s:g} s'
-            self.executor.spin_once(timeout_sec=0.05)
+            spin_once(self.executor, 0.05)
 
     def result(self, future: Future, timeout_s: float = 30.0) -> object:
         """Spin until a future is done and return its result."""

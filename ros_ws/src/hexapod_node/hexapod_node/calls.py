@@ -12,7 +12,8 @@ from rclpy.node import Node
 from rclpy.task import Future
 
 from hexapod_node.conditions import until_true
-from hexapod_node.coroutines import STEADY, until
+from hexapod_node.coroutines import until
+from hexapod_node.timers import call_later
 
 
 class ServiceUnavailableError(TimeoutError):
@@ -31,11 +32,11 @@ async def call(node: Node, client: Client, request: Any, timeout_s: float) -> An
             f'running node that offers it'
         )
     answer = client.call_async(request)
-    timer = node.create_timer(timeout_s, lambda: _give_up(client, answer, timeout_s), clock=STEADY)
+    timer = call_later(node, timeout_s, lambda: _give_up(client, answer, timeout_s))
     try:
         return await until(answer)
     finally:
-        node.destroy_timer(timer)
+        timer.cancel()
 
 
 def _give_up(client: Client, answer: Future, timeout_s: float) -> None:

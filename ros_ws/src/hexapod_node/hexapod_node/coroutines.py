@@ -20,6 +20,8 @@ from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.task import Future
 
+from hexapod_node.timers import call_later, call_soon
+
 STEADY = Clock(clock_type=ClockType.STEADY_TIME)
 
 
@@ -51,20 +53,19 @@ def start(coroutine: Coroutine[Future, None, Any]) -> Future:
 
 async def pause(node: Node) -> None:
     """Let the executor serve what else is due."""
-    assert node.executor is not None, 'a coroutine runs in an executor'
     turn = Future()
-    node.executor.create_task(turn.set_result, None)
+    call_soon(node, lambda: turn.set_result(None))
     await until(turn)
 
 
 async def sleep(node: Node, seconds: float) -> None:
     """Wait without blocking the executor, on a clock that goes on when simulated time stands."""
     done = Future()
-    timer = node.create_timer(seconds, lambda: done.done() or done.set_result(None), clock=STEADY)
+    timer = call_later(node, seconds, lambda: done.set_result(None))
     try:
         await until(done)
     finally:
-        node.destroy_timer(timer)
+        timer.cancel()
 
 
 class CoroutineActionServer(ActionServer):

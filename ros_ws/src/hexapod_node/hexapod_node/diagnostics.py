@@ -8,8 +8,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
+
+from hexapod_node.timers import call_every
 
 _PERIOD_S = 1.0
 
@@ -25,7 +26,7 @@ class Diagnostics:
         self._health = health
         self._hardware = hardware
         self._publisher = node.create_publisher(DiagnosticArray, '/diagnostics', 10)
-        node.create_timer(_PERIOD_S, self.publish, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        call_every(node, _PERIOD_S, self.publish)
 
     def publish(self) -> None:
         """Publish the present state."""

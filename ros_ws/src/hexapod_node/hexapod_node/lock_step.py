@@ -13,10 +13,11 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.task import Future
 
-from hexapod_node.coroutines import STEADY, pause, until
+from hexapod_node.coroutines import pause, until
 from hexapod_node.intra_process import LockStepSubscription
 from hexapod_node.stamp_gate import LockStepCounts, StampGate
 from hexapod_node.stamps import to_nanoseconds
+from hexapod_node.timers import call_every
 
 _WATCH_PERIOD_S = 0.5
 
@@ -43,7 +44,7 @@ class LockStep:
             LockStepSubscription(node, kind, topic, partial(self._on_message, topic))
             for topic, kind in topics.items()
         ]
-        self._watch = node.create_timer(_WATCH_PERIOD_S, self._on_watch, clock=STEADY)
+        self._watch = call_every(node, _WATCH_PERIOD_S, self._on_watch)
 
     @property
     def counts(self) -> LockStepCounts:
@@ -79,7 +80,7 @@ class LockStep:
 
     def destroy(self) -> None:
         """Unsubscribe."""
-        self._node.destroy_timer(self._watch)
+        self._watch.cancel()
         for subscription in self._subscriptions:
             subscription.destroy()
 

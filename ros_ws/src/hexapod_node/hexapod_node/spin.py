@@ -8,17 +8,22 @@ from __future__ import annotations
 import faulthandler
 import gc
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import TypeVar
 
 import rclpy
 from rclpy.exceptions import ParameterException
-from rclpy.executors import ExternalShutdownException
+from rclpy.executors import Executor, ExternalShutdownException
 from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
+from hexapod_node import signals
+from hexapod_node.progress import NoProgressError, Watchdog
 from hexapod_node.session import begin
+from hexapod_node.timers import raise_failure
 
 # EventsExecutor.spin() hangs in some builds of rclpy; a finite wait works everywhere.
 _WAIT_S = 0.5
@@ -28,6 +33,8 @@ _WAIT_S = 0.5
 _TEARDOWN_S = 15.0
 
 
+Nodes = TypeVar('Nodes', bound=Sequence[Node])
+
 EXIT_STATUS = 'exit_status'
 """A node that sets an attribute of this name ends its process with that status."""
 
@@ -36,9 +43,10 @@ def run(make: Callable[[], Node | Sequence[Node]], args: Sequence[str] | None = 
     """Make one node or several and spin them in one thread until a signal comes.
 
     Ends the process with status 0 on SIGINT and SIGTERM, and with 1 and one line of explanation
-    where a parameter or a file that the nodes start from is wrong. A middleware that is stuck at
-    the end is left after 15 s, with status 1 and a traceback.
+    where a parameter or a file that the nodes start from is wrong, or where the executor only
+    spins. A middleware that is stuck at the end is left after 15 s, with status 1 and a traceback.
     """
+    signals.take_over()
     begin(args)
     nodes: list[Node] = []
     status = 0
@@ -49,24 +57,36 @@ def run(make: Callable[[], Node | Sequence[Node]], args: Sequence[str] | None = 
         # of a control period. What is there now stays, so it is left out from here on.
         gc.freeze()
         status = spin(nodes)
-    except (KeyboardInterrupt, ExternalShutdownException):
+    except ExternalShutdownException:
         pass
-    except rclpy_implementation.RCLError:
-        if rclpy.ok():  # else the signal came amid a callback, which could not publish any more
-            raise
-    except (ValueError, OSError, ParameterException) as error:
-        if nodes:  # not a matter of starting: show where it came from
-            raise
+    except Exception as error:
         _limit_teardown()  # what was made so far goes with the error
-        name = remove_ros_args(sys.argv)[0].rsplit('/', 1)[-1]
-        print(f'{name}: {error}', file=sys.stderr)
-        status = 1
+        status = _status_of(error, started=bool(nodes))
     finally:
         _limit_teardown()
         for node in reversed(nodes):
             node.destroy_node()
         rclpy.try_shutdown()
+        signals.ignore()
     sys.exit(status)
+
+
+def _status_of(error: Exception, started: bool) -> int:
+    """Say what went wrong in one line and return the exit status; raise what nobody expects.
+
+    Args:
+        error: what making or spinning the nodes raised.
+        started: whether they were made.
+    """
+    stopped = signals.requested() or isinstance(error, rclpy_implementation.RCLError)
+    if stopped and not rclpy.ok():
+        return 0  # a signal came amid a callback or a start, whose end is no loss
+    starting = not started and isinstance(error, ValueError | OSError | ParameterException)
+    if not starting and not isinstance(error, NoProgressError):
+        raise error
+    name = remove_ros_args(sys.argv)[0].rsplit('/', 1)[-1]
+    print(f'{name}: {error}', file=sys.stderr)
+    return 1
 
 
 def _limit_teardown() -> None:
@@ -83,12 +103,51 @@ def spin(nodes: Sequence[Node]) -> int:
     executor = EventsExecutor()
     for node in nodes:
         executor.add_node(node)
+    watchdog = Watchdog()
     try:
         while rclpy.ok():
-            executor.spin_once(timeout_sec=_WAIT_S)
+            spin_once(executor, _WAIT_S)
+            watchdog.turned()
             for node in nodes:
                 if (status := getattr(node, EXIT_STATUS, None)) is not None:
                     return int(status)
         return 0
     finally:
         executor.shutdown()
+
+
+@contextmanager
+def serving(make: Callable[[], Nodes], namespace: str) -> Iterator[tuple[Executor, Nodes]]:
+    """Serve nodes for as long as the context lasts, whenever `spin_once` is called.
+
+    Args:
+        make: makes them; what it raises ends the context.
+        namespace: of the nodes.
+
+    Raises:
+        SystemExit: with status 0, after a signal.
+    """
+    before = signals.take_over()
+    begin(['--ros-args', '-r', f'__ns:={namespace}'])
+    executor = EventsExecutor()
+    made: list[Node] = []
+    try:
+        nodes = make()
+        made += nodes
+        for node in made:
+            executor.add_node(node)
+        yield executor, nodes
+    except ExternalShutdownException:
+        raise SystemExit(0) from None
+    finally:
+        executor.shutdown()
+        for node in reversed(made):
+            node.destroy_node()
+        rclpy.try_shutdown()
+        signals.give_back(before)
+
+
+def spin_once(executor: Executor, wait_s: float) -> None:
+    """Serve the next event, or wait for one; raise what a timer's or a coroutine's call raised."""
+    executor.spin_once(timeout_sec=wait_s)
+    raise_failure()

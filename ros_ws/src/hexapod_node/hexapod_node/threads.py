@@ -11,10 +11,11 @@ from concurrent.futures import Future
 from typing import TypeVar
 
 from rclpy.node import Node
+from rclpy.task import Future as Turn
 
-from hexapod_node.coroutines import sleep
+from hexapod_node.coroutines import until
+from hexapod_node.timers import call_soon
 
-_POLL_S = 0.01
 Result = TypeVar('Result')
 
 
@@ -24,9 +25,10 @@ async def in_thread(node: Node, work: Callable[[], Result]) -> Result:
     The thread does not keep the process alive: work is cut when the process ends.
     """
     done: Future[Result] = Future()
+    turn = Turn()
+    done.add_done_callback(lambda _: call_soon(node, lambda: turn.set_result(None)))
     threading.Thread(target=_run, args=(work, done), daemon=True).start()
-    while not done.done():
-        await sleep(node, _POLL_S)
+    await until(turn)
     return done.result()
 
 

@@ -5,18 +5,19 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 
-from hexapod_node.coroutines import STEADY
 from hexapod_node.schedule import Schedule
+from hexapod_node.simulated_time import SimulatedTime
 from hexapod_node.tick_meter import TickMeter
+from hexapod_node.timers import Timer, call_every
 
 _SECOND_NS = 1_000_000_000
-# A timer keeps the phase at which it was made, so it is made again if the moment was missed.
 _PHASE_TOLERANCE_NS = 1_000_000
 _PHASE_TRIES = 40
 
@@ -64,44 +65,23 @@ class Ticker:
         self.meter = TickMeter()
         self._node = node
         self._callback = callback
-        self._period_ns = period_ns
-        self._simulated = bool(node.get_parameter('use_sim_time').value)
-        self._clock = node.get_clock() if self._simulated else STEADY
-        self._phase_ns = phase_ns
-        self._tries = 0
-        self._await_phase()
+        if node.get_parameter('use_sim_time').value:
+            self._now_ns = lambda: node.get_clock().now().nanoseconds
+            # Simulated time has not begun yet, or goes on in leaps: the first tick is the grid.
+            self._schedule = Schedule(period_ns)
+            self._source: Timer | SimulatedTime = SimulatedTime(node, self._on_time)
+        else:
+            self._now_ns = time.monotonic_ns
+            first_ns = _next_phase_ns(node, period_ns, phase_ns)
+            self._schedule = Schedule(period_ns, first_ns)
+            self._source = call_every(node, period_ns / _SECOND_NS, self._on_time, first_ns)
 
     def destroy(self) -> None:
         """Tick no more."""
-        self._node.destroy_timer(self._timer)
+        self._source.cancel()
 
-    def _await_phase(self) -> None:
-        """Wait for the moment from which the periodic timer may run."""
-        wait_ns = self._period_ns - self._since_phase_ns()
-        self._timer = self._node.create_timer(wait_ns / _SECOND_NS, self._begin, clock=STEADY)
-
-    def _since_phase_ns(self) -> int:
-        now_ns = self._node.get_clock().now().nanoseconds
-        return (now_ns - self._phase_ns) % self._period_ns
-
-    def _begin(self) -> None:
-        """Start the periodic timer: its first tick is a period from now."""
-        self._node.destroy_timer(self._timer)
-        self._tries += 1
-        late = self._since_phase_ns() > _PHASE_TOLERANCE_NS
-        if late and not self._simulated and self._tries < _PHASE_TRIES:
-            self._await_phase()
-            return
-        now_ns = self._clock.now().nanoseconds
-        self._timer = self._node.create_timer(
-            self._period_ns / _SECOND_NS, self._on_timer, clock=self._clock
-        )
-        period_ns = self._timer.timer_period_ns
-        # Simulated time has not begun yet, or goes on in leaps: the first tick defines the grid.
-        self._schedule = Schedule(period_ns, None if self._simulated else now_ns + period_ns)
-
-    def _on_timer(self) -> None:
-        due = self._schedule.serve(self._clock.now().nanoseconds)
+    def _on_time(self) -> None:
+        due = self._schedule.serve(self._now_ns())
         if due is None:
             return
         self.meter.add(due.late_ns, due.missed)
@@ -112,3 +92,14 @@ class Ticker:
         except rclpy_implementation.RCLError:
             if self._node.context.ok():  # else a signal came amid the tick, whose end is no loss
                 raise
+
+
+def _next_phase_ns(node: Node, period_ns: int, phase_ns: int) -> int:
+    """Return the next moment of the phase, on `time.monotonic_ns`."""
+    for _ in range(_PHASE_TRIES):
+        before_ns = time.monotonic_ns()
+        clock_ns = node.get_clock().now().nanoseconds
+        after_ns = time.monotonic_ns()
+        if after_ns - before_ns <= _PHASE_TOLERANCE_NS:  # else the process paused in between
+            break
+    return after_ns + period_ns - (clock_ns - phase_ns) % period_ns
