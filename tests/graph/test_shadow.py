@@ -124,7 +124,7 @@ def test_what_cannot_be_shadowed_is_one_line(bag: Path, tmp_path, capsys) -> Non
     for options, complaint in (
         ([bag, '--checkpoint', tmp_path / 'none.pt'], 'none.pt'),
         ([bag, '--checkpoint', tmp_path / 'agent.pt', '--episode', '7'], 'it has 0, 1'),
-        ([tmp_path, '--checkpoint', tmp_path / 'agent.pt'], 'no metadata.yaml'),
+        ([tmp_path, '--checkpoint', tmp_path / 'agent.pt'], 'is a folder with one bag below it'),
     ):
         with pytest.raises(SystemExit) as end:
             main([str(option) for option in options])
