@@ -11,13 +11,13 @@ from dataclasses import asdict
 
 import numpy as np
 from hexapod_cpg.mapping import ACTION_SIZE
+from hexapod_sim.command_line import MOST_SEED, CommandLine, file, output_file, whole
 from numpy.typing import NDArray
 from rich.console import Console
 from rich.progress import Progress, track
 from rich.table import Table
 
 from hexapod_agent import checkpoint
-from hexapod_agent.command_line import MOST_SEED, output_file, path, whole
 from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.constant_action import GENERATIONS, best_constant_action
 from hexapod_agent.env import HexapodLine
@@ -61,16 +61,16 @@ def main(args: Sequence[str] | None = None) -> None:
             parser.error(f'--json: {error}')
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog='evaluate', description=__doc__)
-    parser.add_argument('checkpoint', nargs='?', type=path, help='file written by train')
+def _parser() -> CommandLine:
+    parser = CommandLine(prog='evaluate', description=__doc__)
+    parser.add_argument('checkpoint', nargs='?', type=file, help='file written by train')
     parser.add_argument(
         '--policy',
         choices=('zero', 'random', 'constant'),
         help='a baseline instead; constant: the best constant action, searched for minutes',
     )
     parser.add_argument(
-        '--config', type=path, help='configuration of the baseline; default article.yaml'
+        '--config', type=file, help='configuration of the baseline; default article.yaml'
     )
     parser.add_argument(
         '--starts', type=whole(1, 1_000_000), default=50, help='episodes (default 50)'

@@ -7,7 +7,6 @@ The file needs nothing of this project to run: it normalises the readings itself
 is the contract of what to feed in and what comes out.
 """
 
-import argparse
 import json
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -15,12 +14,12 @@ from typing import Any
 import numpy as np
 import onnx
 from hexapod_cpg.mapping import ACTION_SIZE
+from hexapod_sim.command_line import CommandLine, file, output_file
 from hexapod_sim.robot import CONTROL_PERIOD_NS, JOINTS, LEGS
 from numpy.typing import NDArray
 from onnx import TensorProto, helper, numpy_helper
 
 from hexapod_agent import checkpoint
-from hexapod_agent.command_line import output_file, path
 from hexapod_agent.layers import NORM_EPSILON
 from hexapod_agent.observation import PREVIOUS_ACTION, ObservationSpec
 from hexapod_agent.training import Trainer
@@ -33,8 +32,8 @@ _BATCH = 'batch'
 
 def main(args: Sequence[str] | None = None) -> None:
     """Write the file that the command line names."""
-    parser = argparse.ArgumentParser(prog='export', description=__doc__)
-    parser.add_argument('checkpoint', type=path, help='file of train')
+    parser = CommandLine(prog='export', description=__doc__)
+    parser.add_argument('checkpoint', type=file, help='file of train')
     parser.add_argument('out', type=output_file(), help='ONNX file to write')
     options = parser.parse_args(args)
     try:

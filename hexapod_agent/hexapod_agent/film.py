@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 from hexapod_cpg.mapping import ACTION_SIZE
+from hexapod_sim.command_line import MOST_SEED, CommandLine, file, number, output_file, whole
 from hexapod_sim.film import (
     FILMS,
     MOST_HEIGHT,
@@ -23,7 +24,6 @@ from hexapod_sim.film import (
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 
 from hexapod_agent import checkpoint
-from hexapod_agent.command_line import MOST_SEED, output_file, path, real, whole
 from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.policies import Policy, constant_policy, trained_policy
@@ -65,15 +65,15 @@ def film(env: HexapodLine, policy: Policy, options: argparse.Namespace) -> Itera
         camera.close()
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog='film', description=__doc__)
+def _parser() -> CommandLine:
+    parser = CommandLine(prog='film', description=__doc__)
     add = parser.add_argument
-    add('checkpoint', nargs='?', type=path, help='file of train; default: action zero')
-    add('--config', type=path, help='file of changes to the configuration')
+    add('checkpoint', nargs='?', type=file, help='file of train; default: action zero')
+    add('--config', type=file, help='file of changes to the configuration')
     add('--seed', type=whole(0, MOST_SEED), default=1, help='seed of the start (default 1)')
-    add('--seconds', type=real(0.05, 600.0), default=6.0, help='longest film (default 6)')
+    add('--seconds', type=number(0.05, 600.0), default=6.0, help='longest film (default 6)')
     add('--camera', choices=('track', 'top'), default='track')
-    add('--zoom', type=real(0.1, 20.0), default=1.6, help='of the lens (default 1.6)')
+    add('--zoom', type=number(0.1, 20.0), default=1.6, help='of the lens (default 1.6)')
     add('--width', type=whole(16, MOST_WIDTH), default=480, help='pixels (default 480)')
     add('--height', type=whole(16, MOST_HEIGHT), default=320, help='pixels (default 320)')
     add('--out', type=output_file(*FILMS), help='film to write, .gif or .mp4')

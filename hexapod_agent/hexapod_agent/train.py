@@ -11,10 +11,10 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
+from hexapod_sim.command_line import MOST_EPISODES, MOST_SEED, CommandLine, file, folder, whole
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from hexapod_agent import checkpoint
-from hexapod_agent.command_line import MOST_EPISODES, MOST_SEED, output_folder, path, whole
 from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.event_log import EventLog
@@ -138,8 +138,8 @@ def _train_with_progress(trainer: Trainer, episodes: int, directory: Path) -> No
         train(trainer, episodes, directory, report)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog='train', description=__doc__)
+def _parser() -> CommandLine:
+    parser = CommandLine(prog='train', description=__doc__)
     parser.add_argument('--observations', help='letters of the optional channels; default: none')
     parser.add_argument('--seed', type=whole(0, MOST_SEED), help='seed of the run (default 1)')
     parser.add_argument(
@@ -147,9 +147,9 @@ def _parser() -> argparse.ArgumentParser:
         type=whole(1, MOST_EPISODES),
         help="length of the run, with what it has had already; default of the run's configuration",
     )
-    parser.add_argument('--config', type=path, help='YAML file of changes to article.yaml')
+    parser.add_argument('--config', type=file, help='YAML file of changes to article.yaml')
     parser.add_argument(
-        '--out', type=output_folder, required=True, help='directory of log and checkpoints'
+        '--out', type=folder, required=True, help='directory of log and checkpoints'
     )
     parser.add_argument(
         '--resume',

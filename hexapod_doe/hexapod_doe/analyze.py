@@ -7,12 +7,15 @@ import argparse
 import sys
 from collections.abc import Sequence
 
+from hexapod_sim.command_line import options_of
+
 from hexapod_doe.analysis.analysis import analyse
 from hexapod_doe.analysis.analysis_json import write_json
 from hexapod_doe.analysis.analyze_arguments import build_parser
 from hexapod_doe.analysis.options import Options
 from hexapod_doe.analysis.results import Analysis
-from hexapod_doe.errors import AnalysisError, BagError
+from hexapod_doe.designs.plan_file import PlanError
+from hexapod_doe.errors import AnalysisError, BagError, TableError
 from hexapod_doe.reporting.report import write_report
 from hexapod_doe.tables.bag_response import DEFAULT_RESPONSE
 from hexapod_doe.tables.bag_table import bag_responses, plan_rule, read_bags
@@ -29,13 +32,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if args.table and not args.response:
         parser.error('--table needs --response NAME, the column to analyse')
     try:
-        analysis = analyse(_tables(args), _options(args), _confirmation_runs(args))
-    except (AnalysisError, BagError, OSError) as error:
-        print(f'analyze: {error}', file=sys.stderr)
+        options = Options(**options_of(Options, args), confirmation=plan_rule(args.bags))
+        analysis = analyse(_tables(args), options, _confirmation_runs(args))
+        args.out.mkdir(parents=True, exist_ok=True)
+        write_json(analysis, args.out / 'analysis.json')
+        page = write_report(analysis, args.out)
+    except (AnalysisError, BagError, PlanError, OSError) as error:
+        print(f'analyze: {" ".join(str(error).split())}', file=sys.stderr)
         return 2
-    args.out.mkdir(parents=True, exist_ok=True)
-    write_json(analysis, args.out / 'analysis.json')
-    page = write_report(analysis, args.out)
     print(summary(analysis))
     print(f'report: {page}')
     return 0
@@ -55,6 +59,11 @@ def summary(analysis: Analysis) -> str:
 
 def _tables(args: argparse.Namespace) -> list[RunTable]:
     if args.bags:
+        for path in args.bags:
+            if path.is_file():
+                raise TableError(
+                    f'{path}: is a file; give bags by their folder, and a table by --table'
+                )
         response = args.response or DEFAULT_RESPONSE
         # The article knows no blocks, whatever the plan says.
         blocks = '' if args.article and args.blocks is None else args.blocks
@@ -64,26 +73,6 @@ def _tables(args: argparse.Namespace) -> list[RunTable]:
         for path in args.table
         for table in read_csv(path, args.response, args.factors, args.blocks or '')
     ]
-
-
-def _options(args: argparse.Namespace) -> Options:
-    return Options(
-        terms=args.terms,
-        max_order=args.max_order,
-        alpha=args.alpha,
-        hierarchy=args.hierarchy,
-        eliminate=args.eliminate,
-        trim_worst=args.trim_worst,
-        transform=args.transform,
-        article=args.article,
-        level=args.level,
-        estimand=args.estimand,
-        failure_threshold=args.failure_threshold,
-        devices=args.devices,
-        delta=args.delta,
-        confirmation=plan_rule(args.bags),
-        seed=args.seed,
-    )
 
 
 def _confirmation_runs(args: argparse.Namespace) -> dict[str, list[float]]:
@@ -96,6 +85,8 @@ def _confirmation_runs(args: argparse.Namespace) -> dict[str, list[float]]:
             if path.is_dir()
             else read_responses(path, response, args.factors)
         )
+        if not found:
+            raise TableError(f'{path}: no bag of a complete run, expected confirmation runs')
         for label, values in found.items():
             runs.setdefault(label, []).extend(values)
     return runs

@@ -5,11 +5,10 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 
+from hexapod_sim.command_line import CommandLine, folder
 from rich.console import Console
 
 from hexapod_doe.campaigns.campaign import PLAN_FILE
@@ -24,8 +23,8 @@ _LEAST_WIDTH = 100
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Return 0 if every run is done, 1 if some are not, 2 if the folder is no campaign."""
-    parser = argparse.ArgumentParser(prog='campaign_status', description=__doc__)
-    parser.add_argument('directory', type=Path, help=f'folder with {PLAN_FILE}')
+    parser = CommandLine(prog='campaign_status', description=__doc__)
+    parser.add_argument('directory', type=folder, help=f'folder with {PLAN_FILE}')
     parser.add_argument('--page', action='store_true', help='write the HTML page anew, too')
     parser.add_argument('--quiet', action='store_true', help='only the exit status')
     args = parser.parse_args(arguments)

@@ -5,10 +5,9 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
-from pathlib import Path
 
+from hexapod_sim.command_line import CommandLine, output_file, path
 from rich.console import Console
 from rich.table import Table
 
@@ -19,9 +18,9 @@ from hexapod_doe.reporting.figures.follow import save_following
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Draw the path and print each jump's settling time, overshoot and remaining offset."""
-    parser = argparse.ArgumentParser(prog='follow_report', description=__doc__)
-    parser.add_argument('bag', type=Path, help='directory of the bag of one episode')
-    parser.add_argument('--out', type=Path, help='figure to write; default BAG.png')
+    parser = CommandLine(prog='follow_report', description=__doc__)
+    parser.add_argument('bag', type=path, help='directory of the bag of one episode')
+    parser.add_argument('--out', type=output_file(), help='figure to write; default BAG.png')
     options = parser.parse_args(arguments)
     out = options.out or options.bag.with_name(f'{options.bag.name}.png')
     try:

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,6 +12,7 @@ from statistics import mean
 from typing import Any
 
 from hexapod_agent.config import ConfigError
+from hexapod_sim.command_line import CommandLine, file, output_file, path
 from hexapod_sim.task import TERM_NAMES
 from rich.console import Console
 from rich.table import Table
@@ -41,18 +41,18 @@ def main(arguments: Sequence[str] | None = None) -> None:
         options.json.write_text(f'{text}\n', encoding='utf-8')
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog='rescore', description=__doc__)
-    parser.add_argument('bag', type=Path, help='directory of a bag, or a folder of bags')
+def _parser() -> CommandLine:
+    parser = CommandLine(prog='rescore', description=__doc__)
+    parser.add_argument('bag', type=path, help='directory of a bag, or a folder of bags')
     parser.add_argument(
         '--task',
-        type=Path,
+        type=file,
         metavar='FILE',
         help='YAML with a section `task` of what changes, in rewards, limits or line; default: '
         'nothing, to see the recorded rewards come out',
     )
     parser.add_argument(
-        '--json', type=Path, metavar='FILE', help='write the episodes to a file as well'
+        '--json', type=output_file(), metavar='FILE', help='write the episodes to a file as well'
     )
     return parser
 

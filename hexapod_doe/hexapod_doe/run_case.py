@@ -15,6 +15,8 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from hexapod_sim.command_line import CommandLine, file, folder, number, whole
+
 from hexapod_doe.campaigns.campaign import Row, RunSettings, read_rows
 from hexapod_doe.campaigns.campaign_lock import campaign_lock, row_lock
 from hexapod_doe.campaigns.folder import read_progress
@@ -88,35 +90,27 @@ def _row(plan: Path, number: int) -> Row:
     return rows[number]
 
 
-def parser() -> argparse.ArgumentParser:
+def parser() -> CommandLine:
     """Return what understands the command line."""
-    made = argparse.ArgumentParser(prog='run_case', description=__doc__)
-    made.add_argument('--plan', type=Path, required=True, help='plan.csv of the campaign')
-    made.add_argument('--row', type=int, required=True, help='StdOrder of the row')
-    made.add_argument('--out', type=Path, help="the campaign's folder; default that of the plan")
-    made.add_argument('--hyperparameters', type=Path, help='changes to article.yaml')
-    made.add_argument('--episodes', type=_count, default=1000, help='default %(default)s')
+    made = CommandLine(prog='run_case', description=__doc__)
+    made.add_argument('--plan', type=file, required=True, help='plan.csv of the campaign')
+    made.add_argument('--row', type=whole(ge=1), required=True, help='StdOrder of the row')
+    made.add_argument('--out', type=folder, help="the campaign's folder; default that of the plan")
+    made.add_argument('--hyperparameters', type=file, help='changes to article.yaml')
+    made.add_argument('--episodes', type=whole(ge=1), default=1000, help='default %(default)s')
     made.add_argument(
         '--record-every',
-        type=int,
+        type=whole(ge=0),
         default=100,
         help='every how many episodes all topics are recorded; default %(default)s, 0 for never',
     )
     made.add_argument(
         '--stall',
-        type=float,
+        type=number(gt=0),
         default=120.0,
         help='longest time without a sign of life, in seconds; default %(default)s',
     )
     return made
-
-
-def _count(text: str) -> int:
-    """Parse a positive whole number."""
-    value = int(text)
-    if value < 1:
-        raise argparse.ArgumentTypeError(f'{text}, expected at least 1')
-    return value
 
 
 if __name__ == '__main__':

@@ -23,6 +23,7 @@ from hexapod_agent.fleet.learners import Learners, SeparateLearners
 from hexapod_agent.fleet.robots import Robots
 from hexapod_agent.fleet.stacked import StackedLearners
 from hexapod_agent.observation import ObservationSpec
+from hexapod_sim.command_line import CommandLine, file, folder, whole
 
 from hexapod_doe.campaigns.campaign import Campaign, shared_settings
 from hexapod_doe.campaigns.campaign_lock import campaign_lock
@@ -131,25 +132,29 @@ def _train(
         build_fleet(config, due, slots, crew, args.device).train(rows.take)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog='run_fleet', description=__doc__)
-    parser.add_argument('--plan', type=Path, required=True, help='plan.csv of the campaign')
-    parser.add_argument('--out', type=Path, help="the campaign's folder; default that of the plan")
-    parser.add_argument('--episodes', type=_count, help='of a training; default of article.yaml')
+def _parser() -> CommandLine:
+    parser = CommandLine(prog='run_fleet', description=__doc__)
+    parser.add_argument('--plan', type=file, required=True, help='plan.csv of the campaign')
     parser.add_argument(
-        '--hyperparameters', type=Path, help='YAML file of changes to article.yaml'
+        '--out', type=folder, help="the campaign's folder; default that of the plan"
     )
     parser.add_argument(
-        '--processes', type=_count,
+        '--episodes', type=whole(ge=1), help='of a training; default of article.yaml'
+    )
+    parser.add_argument(
+        '--hyperparameters', type=file, help='YAML file of changes to article.yaml'
+    )
+    parser.add_argument(
+        '--processes', type=whole(ge=1),
         help='default one per core on the CPU, one in all on another device',
     )  # fmt: skip
     parser.add_argument(
-        '--slots', type=_count,
+        '--slots', type=whole(ge=1),
         help='runs at a time in a process; default one per thread on the CPU, on another device '
         "the process's share of the rows",
     )  # fmt: skip
     parser.add_argument(
-        '--threads', type=_count,
+        '--threads', type=whole(ge=1),
         help='of a process; default one on the CPU, its share of the cores on another device',
     )  # fmt: skip
     parser.add_argument(  # what this command tells its processes
@@ -159,14 +164,6 @@ def _parser() -> argparse.ArgumentParser:
         '--device', type=_device, default='cpu', help="where the networks are, such as 'cuda'"
     )
     return parser
-
-
-def _count(text: str) -> int:
-    """Parse a positive whole number."""
-    value = int(text)
-    if value < 1:
-        raise argparse.ArgumentTypeError(f'{text}, expected at least 1')
-    return value
 
 
 def _device(text: str) -> str:

@@ -10,10 +10,10 @@ import json
 import sys
 from collections.abc import Sequence
 from dataclasses import asdict
-from pathlib import Path
 
 from hexapod_agent.checkpoint import CheckpointError, load
 from hexapod_agent.policies import trained_policy
+from hexapod_sim.command_line import CommandLine, file, output_file, path, whole
 from rich.console import Console
 from rich.table import Table
 
@@ -40,13 +40,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
     sys.exit(any(comparison.equal < comparison.periods for comparison in found))
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog='shadow', description=__doc__)
-    parser.add_argument('bag', type=Path, help='directory of a bag with all topics of an episode')
+def _parser() -> CommandLine:
+    parser = CommandLine(prog='shadow', description=__doc__)
+    parser.add_argument('bag', type=path, help='directory of a bag with all topics of an episode')
     parser.add_argument(
-        '--checkpoint', required=True, type=Path, help='agent to show it to: a file of train'
+        '--checkpoint', required=True, type=file, help='agent to show it to: a file of train'
     )
-    parser.add_argument('--episode', type=int, help='number of one episode; default: all recorded')
+    parser.add_argument(
+        '--episode', type=whole(ge=0), help='number of one episode; default: all recorded'
+    )
     parser.add_argument(
         '--graph',
         action='store_true',
@@ -54,7 +56,7 @@ def _parser() -> argparse.ArgumentParser:
         'own; an agent that differs goes on from its own actions there',
     )
     parser.add_argument(
-        '--json', type=Path, metavar='FILE', help='write the figures to a file as well'
+        '--json', type=output_file(), metavar='FILE', help='write the figures to a file as well'
     )
     return parser
 

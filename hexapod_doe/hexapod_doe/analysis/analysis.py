@@ -11,7 +11,7 @@ import numpy as np
 from hexapod_doe.analysis.options import Options
 from hexapod_doe.analysis.results import Analysis
 from hexapod_doe.choosing.attribution import alias_safe
-from hexapod_doe.choosing.choice import model_failures
+from hexapod_doe.choosing.choice import Failures, model_failures
 from hexapod_doe.choosing.conclusions import conclude
 from hexapod_doe.choosing.confirm import confirm
 from hexapod_doe.choosing.estimands import estimand, pseudo_values
@@ -72,9 +72,22 @@ def _analyse(
         **conclude(table, outlook, options, rng),
         confirmation=confirm(outlook, options.confirmation, confirmation_runs),
     )
-    failed = [] if failures is None else [failure_caveat(failures.record)]
+    failed = _failure_caveats(table, options, failures)
     caveats = (*base.caveats, *failed, *model_caveats(analysis))
     return dataclasses.replace(analysis, caveats=caveats)
+
+
+def _failure_caveats(table: RunTable, options: Options, failures: Failures | None) -> list[str]:
+    if failures is not None:
+        return [failure_caveat(failures.record)]
+    threshold = options.failure_threshold
+    if threshold is None or options.estimand != 'mean':
+        return []
+    below = int((table.values < threshold).sum())
+    return [
+        f'{below} of {len(table.rows)} runs are below the threshold {threshold:g}: too few of one '
+        'kind for a model of failures.'
+    ]
 
 
 def _with_estimand(table: RunTable, options: Options) -> RunTable:

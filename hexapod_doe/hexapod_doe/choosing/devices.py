@@ -3,6 +3,7 @@
 
 """The table of purchasable devices, and the cheapest ones that yield a set of observations."""
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from importlib.resources import files
@@ -61,14 +62,31 @@ def read_devices(path: Path | None = None) -> DeviceTable:
         FileNotFoundError: There is no such file.
     """
     source = path or files('hexapod_doe.choosing') / 'devices.yaml'
-    record = yaml.safe_load(source.read_text(encoding='utf-8'))
+    try:
+        record = yaml.safe_load(source.read_text(encoding='utf-8'))
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise AnalysisError(f'{source}: no YAML ({error})') from error
     expected = {'currency', 'delta_share', 'confidence', 'devices'}
     if not isinstance(record, dict) or set(record) != expected:
         raise AnalysisError(f'{source}: expected the keys {", ".join(sorted(expected))}')
+    if not isinstance(record['devices'], list) or not record['devices']:
+        raise AnalysisError(f'{source}: expected a list of devices')
     devices = tuple(_device(entry, str(source)) for entry in record['devices'])
-    return DeviceTable(
-        devices, str(record['currency']), float(record['delta_share']), float(record['confidence'])
+    share, confidence = (
+        _number(record[name], f'{source}: {name}', 1.0) for name in ('delta_share', 'confidence')
     )
+    return DeviceTable(devices, str(record['currency']), share, confidence)
+
+
+def _number(value: Any, what: str, high: float = math.inf) -> float:
+    """Return a number from 0 to a limit."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise AnalysisError(f'{what} is {value!r}, expected a number')
+    if value < 0:
+        raise AnalysisError(f'{what} is negative, expected a number from 0')
+    if not (value <= high and math.isfinite(value)):
+        raise AnalysisError(f'{what} is {value}, expected a number up to {min(high, 1e100):g}')
+    return float(value)
 
 
 def _device(entry: Any, source: str) -> Device:
@@ -77,9 +95,12 @@ def _device(entry: Any, source: str) -> Device:
         raise AnalysisError(
             f'{source}: device {entry}: expected the keys {", ".join(sorted(names))}'
         )
-    numbers = {name: float(entry[name]) for name in names - {'name', 'yields'}}
-    if bad := [name for name, value in numbers.items() if value < 0]:
-        raise AnalysisError(f'{source}: device {entry["name"]!r}: {bad[0]} is negative')
-    if numbers['failure_probability'] > 1:
-        raise AnalysisError(f'{source}: device {entry["name"]!r}: failure_probability is above 1')
+    numbers = {
+        name: _number(
+            entry[name],
+            f'{source}: device {entry["name"]!r}: {name}',
+            1.0 if name == 'failure_probability' else math.inf,
+        )
+        for name in sorted(names - {'name', 'yields'})
+    }
     return Device(name=str(entry['name']), yields=str(entry['yields']), **numbers)

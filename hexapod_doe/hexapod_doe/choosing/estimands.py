@@ -8,6 +8,7 @@ it becomes a response per run whose mean is T without its bias, so that every st
 analysis works on it: for the mean the pseudo-values are the runs themselves.
 """
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import comb
@@ -42,7 +43,7 @@ def estimand(name: str) -> Estimand:
     if name == 'iqm':
         return Estimand(name, 'mean of the middle half of the runs', _iqm, 4)
     kind, _, number = name.partition(':')
-    if kind != 'best_of' or not number.isdigit() or int(number) < 1:
+    if kind != 'best_of' or not re.fullmatch('[1-9][0-9]{0,5}', number):
         raise AnalysisError(f'estimand {name!r}: expected mean, iqm or best_of:m')
     best = int(number)
     return Estimand(

@@ -14,6 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
+from hexapod_doe.errors import AnalysisError
+
 MAX_VALLEY = 0.5
 """The gap must be at most this high, against the peak of the failures below it."""
 MAX_SHARE = 0.5
@@ -45,7 +47,15 @@ def failure_threshold(
         response: Response of all runs (n,).
         case: Case of each run (n,); single runs of a case can't show the gap.
         fixed: Threshold that the user fixed, used as it is.
+
+    Raises:
+        AnalysisError: No run reaches the threshold that the user fixed.
     """
+    if fixed is not None and response.max() < fixed:
+        raise AnalysisError(
+            f'failure_threshold {fixed:g}: no run reaches it, the highest is {response.max():g}; '
+            'expected one that tells failed runs from others'
+        )
     if fixed is not None:
         return Threshold(fixed, f'fixed by the user at {fixed:g}')
     spread = min(response.std(ddof=1), stats.iqr(response) / 1.349)

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -13,8 +12,7 @@ from pathlib import Path
 
 from hexapod_agent.contract.limits import Limits, parse_frames
 from hexapod_agent.observation import CHANNELS, ObservationSpec
-
-from hexapod_doe.bags.location import user_path
+from hexapod_sim.command_line import CommandLine, number, path
 
 DESCRIPTION = (
     'Hold the sensors of a live graph, or of a bag, against what the agent was trained with; '
@@ -69,19 +67,20 @@ def parse(words: Sequence[str], ros_words: Sequence[str] = ()) -> CheckOptions:
         parser.error(str(error))
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog='check_sensors', description=DESCRIPTION)
+def _parser() -> CommandLine:
+    parser = CommandLine(prog='check_sensors', description=DESCRIPTION)
     parser.add_argument(
         '--observations', required=True, metavar='ABCDE', help='set whose sensors are needed'
     )
+    parser.add_argument('--bag', type=path, metavar='DIR', help='check a bag, not the live graph')
     parser.add_argument(
-        '--bag', type=user_path, metavar='DIR', help='check a bag, not the live graph'
+        '--seconds', type=number(gt=0), default=3.0, help='how long to listen (default 3)'
     )
     parser.add_argument(
-        '--seconds', type=_positive, default=3.0, help='how long to listen (default 3)'
-    )
-    parser.add_argument(
-        '--wait', type=_positive, default=4.0, help='longest wait for first messages (default 4)'
+        '--wait',
+        type=number(gt=0),
+        default=4.0,
+        help='longest wait for first messages (default 4)',
     )
     parser.add_argument(
         '-r',
@@ -95,7 +94,7 @@ def _parser() -> argparse.ArgumentParser:
         '--frames', default='', metavar='TOPIC=FRAME …', help='frames whose axes equal ours'
     )
     parser.add_argument(
-        '--max-age', type=_positive, default=Limits().max_age, help='in seconds (default 0.1)'
+        '--max-age', type=number(gt=0), default=Limits().max_age, help='in seconds (default 0.1)'
     )
     parser.add_argument(
         '--sync',
@@ -107,13 +106,6 @@ def _parser() -> argparse.ArgumentParser:
         '--json', default='', metavar='FILE', help="also write the outcome; '-' prints just that"
     )
     return parser
-
-
-def _positive(text: str) -> float:
-    value = float(text)
-    if not value > 0.0:
-        raise argparse.ArgumentTypeError(f'{text}: expected a positive number')
-    return value
 
 
 def _ros_remaps(words: Sequence[str]) -> list[str]:

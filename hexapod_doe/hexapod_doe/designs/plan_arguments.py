@@ -6,9 +6,14 @@
 import argparse
 from pathlib import Path
 
+from hexapod_sim.command_line import CommandLine, file, number, whole
+
 from hexapod_doe.designs.design import FRACTIONS
 from hexapod_doe.designs.planner import FULL_TRAINING
 
+_COUNT = whole(ge=1, le=1_000_000)
+_SEED = whole(ge=0, le=2**63)
+_SHARE = number(gt=0, lt=1)
 COMMANDS = {
     'make': 'make a plan (the default)',
     'fold': 'add the foldover or a semifold of a plan that has been run',
@@ -29,8 +34,8 @@ def parse(words: list[str]) -> argparse.Namespace:
     return _parser().parse_args(words)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog='plan', description='Plan a designed experiment.')
+def _parser() -> CommandLine:
+    parser = CommandLine(prog='plan', description='Plan a designed experiment.')
     commands = parser.add_subparsers(dest='command', required=True)
     made = {name: commands.add_parser(name, help=text) for name, text in COMMANDS.items()}
     _add_make(made['make'])
@@ -51,14 +56,14 @@ def _add_make(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--blocks', metavar='WORDS', help='block generators, such as ABE,BCG')
     parser.add_argument(
         '--confirm-runs',
-        type=int,
+        type=_COUNT,
         default=5,
         metavar='M',
         help='runs that will confirm a chosen set (default 5)',
     )
     parser.add_argument(
         '--confirm-level',
-        type=float,
+        type=_SHARE,
         default=0.95,
         metavar='P',
         help='confidence of the interval that their mean must lie in (default 0.95)',
@@ -66,15 +71,15 @@ def _add_make(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_fold(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('plan', type=Path, help='the plan.csv that has been run')
+    parser.add_argument('plan', type=file, help='the plan.csv that has been run')
     parser.add_argument('--on', required=True, metavar='LETTERS', help='factors that change sign')
     parser.add_argument('--keep', metavar='A+', help='fold only the cases with this level')
     _add_output(parser, replicates=None)
 
 
 def _add_augment(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('plan', type=Path, help='the plan.csv that has been run')
-    parser.add_argument('--extra', type=int, default=8, metavar='N', help='cases to add (8)')
+    parser.add_argument('plan', type=file, help='the plan.csv that has been run')
+    parser.add_argument('--extra', type=_COUNT, default=8, metavar='N', help='cases to add (8)')
     parser.add_argument(
         '--separate',
         metavar='TERMS',
@@ -87,48 +92,66 @@ def _add_aliases(parser: argparse.ArgumentParser) -> None:
     _add_design(parser)
     parser.add_argument(
         '--plan',
-        type=Path,
+        type=file,
         nargs='+',
         metavar='FILE',
         help='the cases of these plans together, instead of a design',
     )
-    parser.add_argument('--max-order', type=int, default=2, metavar='N', help='order (2)')
+    parser.add_argument('--max-order', type=_COUNT, default=2, metavar='N', help='order (2)')
 
 
 def _add_power(parser: argparse.ArgumentParser) -> None:
     _add_design(parser)
-    parser.add_argument('--replicates', type=int, default=1, metavar='N', help='runs per case')
-    parser.add_argument('--max-order', type=int, default=2, metavar='N', help='order of the model')
-    parser.add_argument('--effect', type=float, metavar='X', help='effect, in the unit of sigma')
-    parser.add_argument('--sigma', type=float, default=1.0, metavar='X', help='SD of one run')
-    parser.add_argument('--alpha', type=float, default=0.05, metavar='P', help='level of the test')
-    parser.add_argument('--failure', type=float, metavar='P', help='share of runs that fail')
+    parser.add_argument('--replicates', type=_COUNT, default=1, metavar='N', help='runs per case')
     parser.add_argument(
-        '--loss', type=float, default=0.0, metavar='X', help='how much a failed run loses'
+        '--max-order', type=_COUNT, default=2, metavar='N', help='order of the model'
     )
-    parser.add_argument('--failure-sigma', type=float, metavar='X', help='SD of failed runs')
-    parser.add_argument('--repeats', type=int, default=2000, metavar='N', help='campaigns')
-    parser.add_argument('--seed', type=int, default=1, help='seed of the simulation')
+    parser.add_argument(
+        '--effect', type=number(), metavar='X', help='effect, in the unit of sigma'
+    )
+    parser.add_argument(
+        '--sigma', type=number(gt=0), default=1.0, metavar='X', help='SD of one run'
+    )
+    parser.add_argument(
+        '--alpha', type=_SHARE, default=0.05, metavar='P', help='level of the test'
+    )
+    parser.add_argument(
+        '--failure', type=number(ge=0, lt=1), metavar='P', help='share of runs that fail'
+    )
+    parser.add_argument(
+        '--loss', type=number(), default=0.0, metavar='X', help='how much a failed run loses'
+    )
+    parser.add_argument(
+        '--failure-sigma', type=number(gt=0), metavar='X', help='SD of failed runs'
+    )
+    parser.add_argument('--repeats', type=_COUNT, default=2000, metavar='N', help='campaigns')
+    parser.add_argument('--seed', type=_SEED, default=1, help='seed of the simulation')
 
 
 def _add_hours(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('--hours', type=float, required=True, help='wall time to use')
+    parser.add_argument('--hours', type=number(gt=0), required=True, help='wall time to use')
     parser.add_argument(
-        '--seconds-per-run', type=float, required=True, metavar='S', help='measured time of a run'
+        '--seconds-per-run',
+        type=number(gt=0),
+        required=True,
+        metavar='S',
+        help='measured time of a run',
     )
     parser.add_argument(
-        '--run-episodes', type=int, default=1, metavar='N', help='episodes of the measured run'
+        '--run-episodes', type=_COUNT, default=1, metavar='N', help='episodes of the measured run'
     )
-    parser.add_argument('--workers', type=int, default=1, metavar='N', help='workers side by side')
+    parser.add_argument(
+        '--workers', type=_COUNT, default=1, metavar='N', help='workers side by side'
+    )
     parser.add_argument(
         '--episodes',
-        type=int,
+        type=_COUNT,
         default=FULL_TRAINING,
         metavar='N',
         help=f'wanted length of a training (default {FULL_TRAINING})',
     )
-    parser.add_argument('--factors', type=int, default=7, metavar='K', help='sensor groups (7)')
-    parser.add_argument('--sigma', type=float, metavar='X', help='SD of one run, if known')
+    parser.add_argument('--factors', type=_COUNT, default=7, metavar='K', help='sensor groups (7)')
+    parser.add_argument('--sigma', type=number(gt=0), metavar='X', help='SD of one run, if known')
 
 
 def _add_design(parser: argparse.ArgumentParser) -> None:
@@ -146,10 +169,10 @@ def _add_output(parser: argparse.ArgumentParser, replicates: int | None = 1) -> 
     default = 'as in the plan' if replicates is None else replicates
     parser.add_argument(
         '--replicates',
-        type=int,
+        type=_COUNT,
         default=replicates,
         metavar='N',
         help=f'runs per case (default {default})',
     )
-    parser.add_argument('--seed', type=int, default=1, help='seed of run order and run seeds')
-    parser.add_argument('--out', type=Path, default=Path('plan.csv'), help='file to write')
+    parser.add_argument('--seed', type=_SEED, default=1, help='seed of run order and run seeds')
+    parser.add_argument('--out', type=file, default=Path('plan.csv'), help='file to write')

@@ -11,6 +11,9 @@ import pandas as pd
 
 from hexapod_doe.designs.plan_types import Confirmation, Plan, PlanSettings
 from hexapod_doe.designs.terms import letters_on
+from hexapod_doe.errors import TableError
+from hexapod_doe.sheets.numbers import plain
+from hexapod_doe.sheets.sheet import read_sheet
 
 _INTEGERS = ('StdOrder', 'RunOrder', 'case', 'replicate', 'seed')
 REQUIRED = (*_INTEGERS, 'run_id', 'observations')
@@ -42,14 +45,13 @@ def read_plan(path: Path) -> Plan:
         PlanError: The table is not a plan.
     """
     try:
-        # Text first: pandas would read the empty set's letters as a missing value.
-        text = pd.read_csv(path, dtype=str, keep_default_na=False)
-    except pd.errors.ParserError as error:
-        raise PlanError(f'{path}: {error}') from error
-    except pd.errors.EmptyDataError as error:
-        raise PlanError(
-            f'{path}: empty file, expected the columns {", ".join(REQUIRED)}'
-        ) from error
+        sheet = read_sheet(path, REQUIRED)
+    except TableError as error:
+        raise PlanError(str(error)) from error
+    twice = [name for name in sheet.headings if sheet.headings.count(name) > 1]
+    if twice:
+        raise PlanError(f'{path}: column {twice[0]!r} occurs twice, expected it once')
+    text = sheet.cells.set_axis(list(sheet.headings), axis=1).reset_index(drop=True)
     rows = _parse(text, path)
     _check(rows, path)
     return Plan(rows, _read_settings(path.with_suffix('.json')))
@@ -72,7 +74,7 @@ def _parse(text: pd.DataFrame, path: Path) -> pd.DataFrame:
 
 def _integer(value: str, column: str, row: object, path: Path) -> int:
     try:
-        return int(value)
+        return int(plain(value))
     except ValueError as error:
         where = f'{path} row {int(str(row)) + 1}'
         raise PlanError(f'{where}: {column} is {value!r}, expected an integer') from error

@@ -8,11 +8,11 @@
 prints the tables of docs/statistics.md.
 """
 
-import argparse
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+from hexapod_sim.command_line import CommandLine, number, whole
 
 from hexapod_doe.analysis.analysis import analyse
 from hexapod_doe.analysis.findings import Bounds, Estimate
@@ -173,11 +173,11 @@ class Study:
 
 def main() -> None:
     """Run the study and print its tables."""
-    parser = argparse.ArgumentParser(prog='coverage', description=__doc__)
-    parser.add_argument('--repeats', type=int, default=200, help='campaigns (default 200)')
-    parser.add_argument('--seed', type=int, default=1)
+    parser = CommandLine(prog='coverage', description=__doc__)
+    parser.add_argument('--repeats', type=whole(ge=1), default=200, help='campaigns (default 200)')
+    parser.add_argument('--seed', type=whole(ge=0), default=1)
     parser.add_argument(
-        '--aliased', type=float, metavar='FG', help='add an effect FG, confounded with CE, and '
+        '--aliased', type=number(), metavar='FG', help='add an effect FG, confounded with CE, and '
         'judge apart the sets that it cannot mislead',
     )  # fmt: skip
     parser.add_argument('--no-failures', action='store_true', help='every run succeeds')

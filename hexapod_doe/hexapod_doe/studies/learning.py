@@ -9,7 +9,6 @@ trains sets of sensors with several seeds, evaluates each agent from the same st
 baselines, and leaves table.csv and curves.png. What a directory already holds is not repeated.
 """
 
-import argparse
 import json
 import subprocess
 import sys
@@ -20,6 +19,7 @@ from pathlib import Path
 
 import pandas as pd
 from hexapod_agent.train import AGENT, CHECKPOINT, LOG
+from hexapod_sim.command_line import CommandLine, file, folder, whole
 
 from hexapod_doe.studies.learning_curves import draw
 
@@ -134,17 +134,23 @@ def main(args: Sequence[str] | None = None) -> None:
     print(found.to_string(index=False, float_format='{:.3f}'.format, na_rep=''))
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog='learning', description=__doc__)
-    parser.add_argument('--out', type=Path, required=True, help='directory of runs and results')
+def _parser() -> CommandLine:
+    parser = CommandLine(prog='learning', description=__doc__)
+    parser.add_argument('--out', type=folder, required=True, help='directory of runs and results')
     parser.add_argument(
         '--sets', nargs='+', default=['ABCDE', 'none'], help='sets of sensors (ABCDE and none)'
     )
-    parser.add_argument('--seeds', type=int, default=5, help='runs of each set (default 5)')
-    parser.add_argument('--episodes', type=int, default=300, help='per run (default 300)')
-    parser.add_argument('--starts', type=int, default=50, help='of an evaluation (default 50)')
-    parser.add_argument('--config', type=Path, help='YAML file of changes to article.yaml')
-    parser.add_argument('--jobs', type=int, default=2, help='runs side by side (default 2)')
+    parser.add_argument(
+        '--seeds', type=whole(ge=1), default=5, help='runs of each set (default 5)'
+    )
+    parser.add_argument('--episodes', type=whole(ge=1), default=300, help='per run (default 300)')
+    parser.add_argument(
+        '--starts', type=whole(ge=1), default=50, help='of an evaluation (default 50)'
+    )
+    parser.add_argument('--config', type=file, help='YAML file of changes to article.yaml')
+    parser.add_argument(
+        '--jobs', type=whole(ge=1), default=2, help='runs side by side (default 2)'
+    )
     return parser
 
 

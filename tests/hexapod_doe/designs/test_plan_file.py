@@ -84,10 +84,10 @@ def test_a_case_must_have_one_set(path):
 @pytest.mark.parametrize(
     ('text', 'message'),
     [
-        ('', 'empty file, expected the columns StdOrder'),
+        ('', 'empty file, expected a header'),
         ('StdOrder,RunOrder,case,replicate,seed,run_id,observations,A\n', 'no rows'),
         ('StdOrder,RunOrder,case,replicate,seed,run_id,observations\n1,1,1,1,1,a,\n', 'no factor'),
-        ('a,b\n1,2\n1,2,3,4\n', 'Expected 2 fields'),
+        ('a,b\n1,2\n1,2,3,4\n', 'line 3: 4 fields, expected 2'),
     ],
 )
 def test_files_that_hold_no_plan_are_refused(tmp_path, text, message):

@@ -12,13 +12,12 @@ the body's box and the feet. `<leg>_foot` frames keep their axes along odom, so 
 
 from __future__ import annotations
 
-import argparse
 import math
 from collections.abc import Sequence
-from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
+from hexapod_sim.command_line import CommandLine, file
 
 from hexapod_bringup.urdf_elements import (
     ORIGIN,
@@ -159,8 +158,8 @@ def capsule_inertia(mass: float, radius: float, length: float) -> tuple[float, f
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Write the URDF into a file."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('file', type=Path)
+    parser = CommandLine(description=__doc__)
+    parser.add_argument('file', type=file)
     path = parser.parse_args(arguments).file
     path.write_text(robot_description(), encoding='utf-8')
 

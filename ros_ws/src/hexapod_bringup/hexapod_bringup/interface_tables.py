@@ -9,7 +9,6 @@ test holds the README to it.
 
 from __future__ import annotations
 
-import argparse
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
@@ -32,6 +31,7 @@ from hexapod_doe.player_node import PlayerNode
 from hexapod_doe.recorder_node import RecorderNode
 from hexapod_node.session import begin
 from hexapod_node.sync import LOCKSTEP, REALTIME
+from hexapod_sim.command_line import CommandLine, file
 from hexapod_sim.fake_driver_node import FakeDriverNode
 from hexapod_sim.sim_node import SimNode
 from rcl_interfaces.msg import ParameterDescriptor
@@ -210,8 +210,8 @@ def _markdown(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Write both kinds of tables into a file."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('readme', type=Path)
+    parser = CommandLine(description=__doc__)
+    parser.add_argument('readme', type=file)
     path = parser.parse_args(arguments).readme
     text = replace(path.read_text(encoding='utf-8'), 'sensors', sensor_table())
     nodes = node_tables(path.resolve().parent / SAMPLE_BAG)

@@ -5,9 +5,9 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Sequence
-from pathlib import Path
+
+from hexapod_sim.command_line import CommandLine, file
 
 from hexapod_bringup.layouts.foxglove import foxglove
 from hexapod_bringup.layouts.plotjuggler import plotjuggler
@@ -19,12 +19,12 @@ MAKERS = {'foxglove': foxglove, 'plotjuggler': plotjuggler}
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Print a layout, or write it into a file."""
-    parser = argparse.ArgumentParser(prog='layout', description=__doc__)
+    parser = CommandLine(prog='layout', description=__doc__)
     parser.add_argument('program', choices=MAKERS)
     parser.add_argument(
         '--namespace', default=NAMESPACE, help=f'of the nodes to see (default {NAMESPACE})'
     )
-    parser.add_argument('--out', type=Path, metavar='FILE', help='write it instead of printing')
+    parser.add_argument('--out', type=file, metavar='FILE', help='write it instead of printing')
     options = parser.parse_args(arguments)
     text = MAKERS[options.program](options.namespace)
     if options.out is None:

@@ -9,7 +9,6 @@ their diagnostics say of the lateness of their ticks.
 
 from __future__ import annotations
 
-import argparse
 import os
 import signal
 import subprocess
@@ -27,6 +26,7 @@ from hexapod_agent.training import Trainer
 from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.session import begin
 from hexapod_node.tick_meter import LATE_NS
+from hexapod_sim.command_line import CommandLine, file, number
 from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.node import Node
 from rclpy.utilities import try_shutdown
@@ -160,9 +160,9 @@ def verdict(heard: Mapping[str, Diagnosis]) -> tuple[bool, str]:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Measure and print; the exit status is 0 if the target is kept."""
-    parser = argparse.ArgumentParser(prog='realtime_report', description=__doc__)
-    parser.add_argument('--seconds', type=float, default=60.0, help='how long to measure')
-    parser.add_argument('--checkpoint', type=Path, help='agent; without one, an untrained one')
+    parser = CommandLine(prog='realtime_report', description=__doc__)
+    parser.add_argument('--seconds', type=number(gt=0), default=60.0, help='how long to measure')
+    parser.add_argument('--checkpoint', type=file, help='agent; without one, an untrained one')
     parser.add_argument(
         '--observations', default='ABCDE', help='channels of an untrained agent (ABCDE)'
     )

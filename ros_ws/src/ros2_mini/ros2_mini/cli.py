@@ -135,10 +135,11 @@ def main(argv: Sequence[str] | None = None) -> int:
         that ended a verb which runs until it is interrupted.
     """
     words = sys.argv[1:] if argv is None else list(argv)
+    if hasattr(sys.stdout, 'reconfigure'):
+        # What a terminal's encoding lacks is written as an escape.
+        sys.stdout.reconfigure(line_buffering=True, errors='backslashreplace')
     args = build_parser(words).parse_args(words)
     if args.main is None:
         args.help_of.print_help()
         return 0
-    if hasattr(sys.stdout, 'reconfigure'):
-        sys.stdout.reconfigure(line_buffering=True)
     return _call(args)
