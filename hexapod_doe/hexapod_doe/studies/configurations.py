@@ -36,6 +36,7 @@ from hexapod_agent.policies import Policy, constant_policy, trained_policy
 from hexapod_agent.provenance import provenance
 from hexapod_agent.train import train_episode
 from hexapod_agent.training import Trainer
+from hexapod_sim.command_line import CommandLine, file, folder, whole
 from pydantic import PositiveInt, TypeAdapter, ValidationError
 
 from hexapod_agent import checkpoint
@@ -276,12 +277,14 @@ def _evaluation(env: HexapodLine, policy: Policy, starts: int) -> Evaluation:
     return summarize([run_episode(env, policy, JUDGEMENT_SEED, start) for start in range(starts)])
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog='configurations', description=__doc__)
-    parser.add_argument('study', type=Path, help='YAML file: see docs/learning.md')
-    parser.add_argument('--out', type=Path, required=True, help='directory of table and agents')
-    parser.add_argument('--jobs', type=int, default=2, help='runs side by side (default 2)')
-    parser.add_argument('--only', type=int, help=argparse.SUPPRESS)  # one run, in this process
+def _parser() -> CommandLine:
+    parser = CommandLine(prog='configurations', description=__doc__)
+    parser.add_argument('study', type=file, help='YAML file: see docs/learning.md')
+    parser.add_argument('--out', type=folder, required=True, help='directory of table and agents')
+    parser.add_argument('--jobs', type=whole(1), default=2, help='runs side by side (default 2)')
+    parser.add_argument(
+        '--only', type=whole(0), help=argparse.SUPPRESS
+    )  # one run, in this process
     return parser
 
 
