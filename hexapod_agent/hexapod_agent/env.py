@@ -10,14 +10,20 @@ import gymnasium
 import numpy as np
 from hexapod_cpg.cpg import Cpg
 from hexapod_cpg.mapping import command_from_action
+from hexapod_sim.film import Frame
+from hexapod_sim.picture import Picture
+from hexapod_sim.robot import CONTROL_PERIOD_NS, NEUTRAL_POSE, SUBSTEPS
 from hexapod_sim.sensors import CHANNEL_READERS, read
 from hexapod_sim.task import LineTask, Outcome, episode_seed
+from hexapod_sim.viewer import has_display
 from numpy.typing import NDArray
 
 from hexapod_agent.config import AgentConfig
 from hexapod_agent.observation import ACTION_SIZE, ObservationError, ObservationSpec
 
 Observation = NDArray[np.float32]
+
+_STANDING = np.tile(NEUTRAL_POSE, (SUBSTEPS, 1))
 
 
 def read_observation(
@@ -95,20 +101,35 @@ class HexapodLine(gymnasium.Env[Observation, NDArray[np.float32]]):
 
     ## Information
     `terms` (each reward term), `line_offset` (m), `joint_targets` (5, 18) in rad sent during the
-    step, `cause`.
+    step, at the start the standing pose, `cause`.
 
     ## Arguments
     `observations`: letters of the optional channels. `config`: an `AgentConfig`, the path of a
-    YAML file, or None for article.yaml.
+    YAML file, or None for article.yaml. `render_mode`: None, `rgb_array` (`render()` draws
+    off-screen, which needs EGL), or `human` (a window in real time, where there is a display).
+    `width`, `height`: pixels of a picture. `camera`: `track` or `top`.
+
+    ## Copies
+    `copy.deepcopy` and `pickle` give an environment that goes on as this one, to the last bit.
+    A copy draws anew: pictures and windows stay with the original.
 
     ## Version history
     * v0: first version.
     """
 
-    metadata: dict[str, Any] = {'render_modes': []}  # noqa: RUF012 (gymnasium's type)
+    metadata: dict[str, Any] = {  # noqa: RUF012 (gymnasium's type)
+        'render_modes': ['rgb_array', 'human'] if has_display() else ['rgb_array'],
+        'render_fps': 1_000_000_000 // CONTROL_PERIOD_NS,
+    }
 
     def __init__(
-        self, observations: str = '', config: AgentConfig | str | Path | None = None
+        self,
+        observations: str = '',
+        config: AgentConfig | str | Path | None = None,
+        render_mode: str | None = None,
+        width: int = 480,
+        height: int = 320,
+        camera: str = 'track',
     ) -> None:
         self.config = config if isinstance(config, AgentConfig) else AgentConfig.load(config)
         self.observation_spec = ObservationSpec(observations)
@@ -121,7 +142,9 @@ class HexapodLine(gymnasium.Env[Observation, NDArray[np.float32]]):
         self._run_seed = 0
         self._episode = -1
         self._previous_action = np.zeros(ACTION_SIZE, np.float32)
-        self._joint_targets = np.zeros((0, 0))
+        self._joint_targets = _STANDING.copy()
+        self._picture = Picture(self.task.simulation, render_mode, width, height, camera)
+        self.render_mode = render_mode
         self.outcome = Outcome(0, 0.0, {}, False, False, '')
 
     def reset(
@@ -137,7 +160,8 @@ class HexapodLine(gymnasium.Env[Observation, NDArray[np.float32]]):
         self.outcome = self.task.reset(episode_seed(self._run_seed, self._episode))
         self.cpg.reset()
         self._previous_action = np.zeros(ACTION_SIZE, np.float32)
-        self._joint_targets = np.zeros((0, 18))
+        self._joint_targets = _STANDING.copy()
+        self._picture.advance()
         return self._observe(), self._info()
 
     def step(
@@ -151,7 +175,26 @@ class HexapodLine(gymnasium.Env[Observation, NDArray[np.float32]]):
         self._previous_action = action
         outcome = self.outcome
         observation = self._observe()
+        self._picture.advance()
         return observation, outcome.reward, outcome.terminated, outcome.truncated, self._info()
+
+    def render(self) -> Frame | None:
+        """Return the picture of now (height, width, 3), RGB; in a window there is none.
+
+        Raises:
+            hexapod_sim.film.FilmError: There is nothing to draw with.
+            hexapod_sim.viewer.ViewerError: There is no display.
+        """
+        if self.render_mode is None:
+            gymnasium.logger.warn(
+                "render: the environment was made without render_mode, expected 'rgb_array' or "
+                "'human'"
+            )
+        return self._picture.draw()
+
+    def close(self) -> None:
+        """Close what `render` has opened."""
+        self._picture.close()
 
     def _observe(self) -> Observation:
         """Read what the set of channels needs, and nothing else."""

@@ -3,8 +3,10 @@
 
 """The robot on its floor: MuJoCo physics advanced one control period at a time, with queries."""
 
+import copy
 import math
 from pathlib import Path
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -27,7 +29,7 @@ class SimulationDivergedError(RuntimeError):
 
 
 class Simulation:
-    """Physics of one hexapod.
+    """Physics of one hexapod; a copy, by `copy.deepcopy` or pickle, goes on to the last bit.
 
     Attributes:
         model: The compiled hexapod.xml.
@@ -36,18 +38,37 @@ class Simulation:
     """
 
     def __init__(self) -> None:
-        self.model = mujoco.MjModel.from_xml_path(str(_MODEL_PATH))
-        self.data = mujoco.MjData(self.model)
-        self.sensor_blocks = sensors.locate_blocks(self.model)
-        self._options = self.model.opt
-        self._flags_with_sensors = self._options.disableflags
+        model = mujoco.MjModel.from_xml_path(str(_MODEL_PATH))
+        self.sensor_blocks = sensors.locate_blocks(model)
+        self._flags_with_sensors = model.opt.disableflags
         self._steps_per_target = whole_ratio(robot.TARGET_PERIOD_NS, robot.PHYSICS_STEP_NS)
-        # Views into MuJoCo's arrays, fetched once: attribute access costs more than the copy.
-        self._ctrl = self.data.ctrl
-        self._qpos = self.data.qpos
-        self._qvel = self.data.qvel
+        self._bind(model, mujoco.MjData(model))
         self._standing_qpos = self._settle()
         self.reset(0.0)
+
+    def _bind(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
+        """Take over a model with its data."""
+        self.model, self.data = model, data
+        # Views into MuJoCo's structures, fetched once: attribute access costs more than the copy.
+        self._options = model.opt
+        self._ctrl = data.ctrl
+        self._qpos = data.qpos
+        self._qvel = data.qvel
+
+    def __getstate__(self) -> dict[str, Any]:
+        state = vars(self).copy()
+        for name in ('model', '_options', '_ctrl', '_qpos', '_qvel'):
+            del state[name]
+        return state
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        source = state.pop('data')
+        vars(self).update(state)
+        # A model of its own, as each simulation has: `advance` switches the model's sensors.
+        model = copy.deepcopy(source.model)
+        data = mujoco.MjData(model)
+        mujoco.mj_copyData(data, model, source)
+        self._bind(model, data)
 
     def reset(self, y: float, yaw: float = 0.0) -> None:
         """Stand the robot still on the floor at (0, y) of odom, heading ``yaw``.

@@ -21,6 +21,11 @@ class ViewerError(ValueError):
     """There is nowhere to open a window."""
 
 
+def has_display() -> bool:
+    """Return whether there is somewhere to open a window."""
+    return sys.platform != 'linux' or bool({'DISPLAY', 'WAYLAND_DISPLAY'} & os.environ.keys())
+
+
 class Viewer:
     """MuJoCo's passive viewer, its camera on the robot; closing the window ends the pacing."""
 
@@ -34,7 +39,7 @@ class Viewer:
         Raises:
             ViewerError: there is no display.
         """
-        if sys.platform == 'linux' and not ({'DISPLAY', 'WAYLAND_DISPLAY'} & os.environ.keys()):
+        if not has_display():
             raise ViewerError(
                 'viewer: no display (DISPLAY is not set), expected a desktop; without one, '
                 '`ros2 run hexapod_agent film` draws off-screen'

@@ -9,7 +9,7 @@ import sys
 
 import numpy as np
 import pytest
-from hexapod_sim.film import Camera, FilmError, strip, write_film
+from hexapod_sim.film import MOST_HEIGHT, MOST_WIDTH, Camera, FilmError, strip, write_film
 from hexapod_sim.simulation import Simulation
 from PIL import Image
 
@@ -104,3 +104,8 @@ def test_missing_opengl_is_one_clear_error() -> None:
         [sys.executable, '-c', code], capture_output=True, text=True, check=True
     )
     assert 'expected EGL: on Debian and Ubuntu `apt install libegl1' in ended.stdout
+
+
+def test_the_largest_picture_is_the_one_of_the_model(simulation: Simulation) -> None:
+    size = simulation.model.vis.global_
+    assert (size.offwidth, size.offheight) == (MOST_WIDTH, MOST_HEIGHT)

@@ -3,7 +3,9 @@
 
 """Physics: naming, rest, determinism, reset hygiene, step convergence and clear failures."""
 
+import copy
 import math
+import pickle
 from pathlib import Path
 
 import mujoco
@@ -227,3 +229,14 @@ def test_whole_ratio_refuses_what_does_not_divide() -> None:
         whole_ratio(5_000_000, 2_000_000)
     with pytest.raises(ValueError, match='physics step 10000000 ns'):
         whole_ratio(5_000_000, 10_000_000)
+
+
+@pytest.mark.parametrize('duplicate', [copy.deepcopy, lambda it: pickle.loads(pickle.dumps(it))])
+def test_a_copy_goes_on_to_the_last_bit_and_by_itself(simulation: Simulation, duplicate) -> None:
+    simulation.reset(0.2)
+    record(simulation, wiggle(1, 20))
+    twin, later = duplicate(simulation), wiggle(2, 20)
+    assert twin.model is not simulation.model
+    expected = record(simulation, later)
+    record(simulation, wiggle(3, 5))  # does not move the copy
+    np.testing.assert_array_equal(record(twin, later), expected)
