@@ -68,7 +68,7 @@ def _analyse(
         choice=outlook.ranking[0],
         choice_rule=outlook.choice_rule,
         two_part=None if failures is None else failures.record,
-        estimands=estimates(table, options.level, rng),
+        estimands=estimates(table, options.level),
         **conclude(table, outlook, options, rng),
         confirmation=confirm(outlook, options.confirmation, confirmation_runs),
     )

@@ -29,7 +29,6 @@ class EstimandResult:
     description: str
     terms: tuple[str, ...]
     coef: Mapping[str, float]
-    resamples: int
     predictions: Mapping[str, Estimate]
     ranking: tuple[str, ...]
     choice: str
@@ -89,6 +88,8 @@ class Attribution:
 
     ambiguous: Mapping[str, tuple[str, ...]]
     """Each ambiguous term of the model and the terms it may stand for."""
+    partial: Mapping[str, Mapping[str, float]]
+    """Each term of the model that holds a part of others, with their weights in it."""
     attributions: int
     """Ways to name them all."""
     examined: int

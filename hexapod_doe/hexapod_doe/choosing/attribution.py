@@ -18,6 +18,7 @@ import pandas as pd
 from hexapod_doe.analysis.findings import Attribution
 from hexapod_doe.choosing.prediction import rank_descending
 from hexapod_doe.designs.terms import CONSTANT, CURVATURE, column, order, terms_up_to
+from hexapod_doe.fitting.alias_matrix import partial_aliases
 from hexapod_doe.fitting.model import centre_points, corners, labels, model_matrix
 
 MAX_EXAMINED = 4096
@@ -52,9 +53,12 @@ def candidates(levels: pd.DataFrame, terms: Sequence[str]) -> Candidates:
 
 
 def alias_safe(levels: pd.DataFrame, terms: Sequence[str]) -> np.ndarray:
-    """Tell for each of the 2^k combinations whether no naming changes its prediction (2^k,)."""
+    """Tell for each of the 2^k combinations whether no naming changes its prediction (2^k,).
+
+    Where a term holds a part of others no combination is safe: its main effects are in all.
+    """
     points = corners(list(levels.columns))
-    safe = np.ones(len(points), dtype=bool)
+    safe = np.full(len(points), not partial_aliases(levels, terms))
     for aliases in candidates(levels, terms).values():
         names, signs = zip(*aliases, strict=True)
         columns = model_matrix(points, names) * signs
@@ -99,6 +103,7 @@ def attribute(
     winners = Counter(names[i] for i in ranks.argmin(axis=1))
     return Attribution(
         ambiguous={term: tuple(t for t, _ in group) for term, group in ambiguous.items()},
+        partial=partial_aliases(levels, terms),
         attributions=prod(part.shape[1] for part in parts),
         examined=len(choices),
         winners=dict(winners.most_common()),

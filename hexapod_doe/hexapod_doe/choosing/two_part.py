@@ -17,6 +17,7 @@ from scipy import special, stats
 
 from hexapod_doe.choosing.draws import coefficient_draws
 from hexapod_doe.designs.terms import CONSTANT, order
+from hexapod_doe.fitting.alias_matrix import without_arbitrary
 from hexapod_doe.fitting.elimination import eliminate
 from hexapod_doe.fitting.logistic import LogisticFit, firth
 from hexapod_doe.fitting.model import corners, estimable_terms, independent_terms, model_matrix
@@ -90,7 +91,7 @@ def fit_parts(table: RunTable, threshold: float) -> Parts | None:
     failed = table.values < threshold
     mains = independent_terms(table.levels, [CONSTANT, *table.factors])
     blocks = table.block_basis(~failed)
-    wanted = estimable_terms(table.levels, 2)
+    wanted = without_arbitrary(table.levels, estimable_terms(table.levels, 2))
     success_terms = independent_terms(table.levels[~failed], wanted, blocks)
     runs = (~failed).sum() - blocks.shape[1]
     while failed.sum() >= 2 and runs - len(success_terms) < 2:

@@ -5,8 +5,13 @@
 
 No term is selected and no equal variance assumed: elimination leaves out small effects whose sum
 moves a prediction (its classical 90 % intervals cover 68 % in the study of docs/statistics.md),
-and failing runs make the variance differ by case.
+and failing runs make the variance differ by case. What a prediction varies by is added up from
+the cases, from blocks and from interactions that the model must leave out; its interval is that
+of t with Satterthwaite's degrees of freedom, which holds from two runs of a case on.
 """
+
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
@@ -15,47 +20,48 @@ from scipy import stats
 from hexapod_doe.analysis.findings import EstimandResult, Estimate
 from hexapod_doe.choosing.estimands import Estimand, estimand, pseudo_values
 from hexapod_doe.choosing.prediction import rank_descending
+from hexapod_doe.fitting.alias_matrix import AliasMatrix, alias_matrix, without_arbitrary
 from hexapod_doe.fitting.model import corners, estimable_terms, labels, model_matrix
+from hexapod_doe.fitting.regression import ols
 from hexapod_doe.tables.table import BLOCK, RunTable
 
 STATED = ('mean', 'iqm', 'best_of:3')
-RESAMPLES = 2000
+_DRAWN = 2.0
+"""In the study of docs/statistics.md intervals cover with this, from two runs of a case on."""
 
 
-def estimates(
-    table: RunTable, level: float, rng: np.random.Generator
-) -> tuple[EstimandResult, ...]:
+@dataclass(frozen=True)
+class _Variance:
+    """A part of the variance of all predictions (m,), and its degrees of freedom."""
+
+    value: np.ndarray
+    df: np.ndarray | float
+
+
+def estimates(table: RunTable, level: float) -> tuple[EstimandResult, ...]:
     """Return a result for each of the stated estimands that every case has enough runs for."""
     fewest = int(table.rows.groupby('case').size().min())
     known = (estimand(name) for name in STATED)
     return tuple(
-        estimate(table, item, level, rng) for item in known if fewest >= max(2, item.least_runs)
+        estimate(table, item, level) for item in known if fewest >= max(2, item.least_runs)
     )
 
 
-def estimate(
-    table: RunTable, item: Estimand, level: float, rng: np.random.Generator
-) -> EstimandResult:
+def estimate(table: RunTable, item: Estimand, level: float) -> EstimandResult:
     """Estimate all combinations from the terms up to order 2 that the runs can estimate.
 
     Args:
         table: Runs, two in each case at least.
         item: What is estimated.
         level: Confidence of the intervals.
-        rng: For the resamples.
     """
-    everything = np.ones(len(table.rows), dtype=bool)
-    terms = estimable_terms(table.levels, 2, table.block_basis(everything))
+    terms = without_arbitrary(table.levels, estimable_terms(table.levels, 2, table.all_blocks))
     inverse = np.linalg.pinv(model_matrix(table.levels, terms))
     response = pseudo_values(item, table.values, table.rows['case'])
     grid = corners(table.factors)
     weights = model_matrix(grid, terms) @ inverse
     fits = weights @ response
-    case = table.rows.groupby('case').ngroup().to_numpy()
-    if item.name == 'mean':
-        low, high = _bootstrap(weights, response, case, _complete_blocks(table), level, rng)
-    else:
-        low, high = _within_cases(weights, response, case, level)
+    half = _half_width(_variances(table, terms, weights, response), level)
     names = labels(grid)
     ranking = [names[i] for i in np.argsort(rank_descending(fits))]
     return EstimandResult(
@@ -63,14 +69,73 @@ def estimate(
         description=item.description,
         terms=terms,
         coef=dict(zip(terms, map(float, inverse @ response), strict=True)),
-        resamples=RESAMPLES if item.name == 'mean' else 0,
         predictions={
-            name: Estimate(float(fits[i]), (float(low[i]), float(high[i])))
+            name: Estimate(float(fits[i]), (float(fits[i] - half[i]), float(fits[i] + half[i])))
             for i, name in enumerate(names)
         },
         ranking=tuple(ranking),
         choice=ranking[0],
     )
+
+
+def _half_width(parts: Sequence[_Variance], level: float) -> np.ndarray:
+    """Return half widths by t with Satterthwaite's degrees of freedom (m,)."""
+    total = np.sum([part.value for part in parts], axis=0)
+    rest = np.sum([part.value**2 / part.df for part in parts], axis=0)
+    df = total**2 / np.maximum(rest, np.finfo(float).tiny)
+    return stats.t.ppf((1 + level) / 2, np.maximum(df, 1)) * np.sqrt(total)
+
+
+def _variances(
+    table: RunTable, terms: Sequence[str], weights: np.ndarray, response: np.ndarray
+) -> list[_Variance]:
+    """Return what the predictions vary by.
+
+    Args:
+        table: The runs (n).
+        terms: Terms of the model.
+        weights: Of each run in each prediction (m, n).
+        response: What is estimated, per run (n,).
+    """
+    case = table.rows.groupby('case').ngroup().to_numpy()
+    block = _complete_blocks(table)
+    free, between = response, None
+    if block is not None:
+        means = np.bincount(block, response) / np.bincount(block)
+        free, between = response - means[block], means
+    within, mean_square = _within_cases(weights, free, case, 0 if between is None else 1)
+    parts = [within]
+    if between is not None:
+        parts.append(_between_blocks(between, mean_square, int(case.max()) + 1, len(weights)))
+    left_out = _left_out(table, terms, response)
+    return parts if left_out is None else [*parts, left_out]
+
+
+def _within_cases(
+    weights: np.ndarray, response: np.ndarray, case: np.ndarray, shared: int
+) -> tuple[_Variance, float]:
+    """Return the variance by that within each case, and its mean square.
+
+    A case of a few runs hardly tells its variance, and one that saw no failure far too little:
+    each is drawn to the mean over cases with the weight of `_DRAWN` degrees of freedom.
+
+    Args:
+        weights: Of each run in each prediction (m, n).
+        response: Of each run, free of blocks (n,).
+        case: Of each run (n,).
+        shared: 1 if block means, which all cases share, were taken out of the response.
+    """
+    count = np.bincount(case)
+    means = np.bincount(case, response) / count
+    variance = np.bincount(case, (response - means[case]) ** 2) / (count - 1)
+    variance /= 1 - shared / len(count)
+    own, mean_square = count - 1, float(np.average(variance, weights=count - 1))
+    drawn = (own * variance + _DRAWN * mean_square) / (own + _DRAWN)
+    parts = np.array([np.bincount(case, row**2) for row in weights]) * drawn
+    value = parts.sum(axis=1)
+    rest = (parts**2 / (own + _DRAWN)).sum(axis=1)
+    df = value**2 / np.maximum(rest, np.finfo(float).tiny)
+    return _Variance(value, np.clip(df, 1, own.sum())), mean_square
 
 
 def _complete_blocks(table: RunTable) -> np.ndarray | None:
@@ -81,46 +146,36 @@ def _complete_blocks(table: RunTable) -> np.ndarray | None:
     return pd.factorize(table.rows[BLOCK])[0] if (counts == 1).all(axis=None) else None
 
 
-def _bootstrap(
-    weights: np.ndarray,
-    response: np.ndarray,
-    case: np.ndarray,
-    block: np.ndarray | None,
-    level: float,
-    rng: np.random.Generator,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return expanded percentile intervals, resampling the runs within each case.
+def _between_blocks(means: np.ndarray, mean_square: float, cases: int, points: int) -> _Variance:
+    """Return the variance of the mean over blocks, which all predictions share.
 
-    Where every case has a run of every block, blocks are resampled, the same in all cases.
-    The percentile α' = Φ(−√(n/(n−1))·t₍₁₋α/₂; n−1₎) makes up for the small n of a case
-    (Hesterberg, The American Statistician 69, 2015).
+    σ²_block/B with σ²_block = (MS_block − s²)/cases, where that is positive.
     """
-    cases = [np.flatnonzero(case == number) for number in range(case.max() + 1)]
-    if block is None:
-        picks = [rng.choice(rows, (RESAMPLES, len(rows))) for rows in cases]
-    else:
-        shared = rng.choice(block.max() + 1, (RESAMPLES, block.max() + 1))
-        picks = [rows[np.argsort(block[rows])][shared] for rows in cases]
-    means = np.array([response[pick].mean(axis=1) for pick in picks])
-    draws = means.T @ np.array([weights[:, rows].sum(axis=1) for rows in cases])
-    fewest = min(map(len, cases))
-    t = stats.t.ppf((1 + level) / 2, fewest - 1)
-    tail = stats.norm.cdf(-np.sqrt(fewest / (fewest - 1)) * t)
-    low, high = np.quantile(draws, [tail, 1 - tail], axis=0)
-    return low, high
+    blocks = len(means)
+    total = float(means.var(ddof=1)) / blocks
+    value = max(0.0, total - mean_square / (cases * blocks))
+    df = (blocks - 1) * (value / total) ** 2 if value else 1.0
+    return _Variance(np.full(points, value), df)
 
 
-def _within_cases(
-    weights: np.ndarray, response: np.ndarray, case: np.ndarray, level: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return t intervals by the variance within each case and Satterthwaite's df."""
-    count = np.bincount(case)
-    means = np.bincount(case, response) / count
-    variance = np.bincount(case, (response - means[case]) ** 2) / (count - 1)
-    squared = np.array([np.bincount(case, row**2) for row in weights])
-    parts = squared * variance
-    total = parts.sum(axis=1)
-    df = total**2 / np.maximum((parts**2 / (count - 1)).sum(axis=1), np.finfo(float).tiny)
-    half = stats.t.ppf((1 + level) / 2, np.maximum(df, 1)) * np.sqrt(total)
-    fits = weights @ response
-    return fits - half, fits + half
+def _left_out(table: RunTable, terms: Sequence[str], response: np.ndarray) -> _Variance | None:
+    """Return what interactions add that the cases cannot tell apart; None if they can.
+
+    They are taken for random with the variance τ² that the lack of fit shows: a prediction is off
+    by Σβⱼ·(xⱼ − x'Aⱼ), A the alias matrix.
+    """
+    matrix = alias_matrix(table.levels, terms)
+    lack = ols(table.levels, response, terms, table.all_blocks).lack_of_fit
+    if not matrix.arbitrary or lack is None:
+        return None
+    off = _not_held(table.levels, matrix)
+    excess = lack.ss_lack_of_fit - lack.df_lack_of_fit * lack.ss_pure_error / lack.df_pure_error
+    tau = max(0.0, excess) / float((off**2).sum())
+    reach = (_not_held(corners(table.factors), matrix) ** 2).sum(axis=1)
+    return _Variance(tau * reach, float(lack.df_lack_of_fit))
+
+
+def _not_held(levels: pd.DataFrame, matrix: AliasMatrix) -> np.ndarray:
+    """Return what of each omitted term's column the estimated ones don't hold (rows, omitted)."""
+    held = model_matrix(levels, matrix.estimated) @ matrix.weights
+    return model_matrix(levels, matrix.omitted) - held

@@ -11,6 +11,7 @@ import pandas as pd
 from hexapod_doe.analysis.options import Options
 from hexapod_doe.designs.terms import CONSTANT, CURVATURE, is_interaction, order
 from hexapod_doe.errors import TableError
+from hexapod_doe.fitting.alias_matrix import without_arbitrary
 from hexapod_doe.fitting.elimination import Dropped, eliminate, with_parents
 from hexapod_doe.fitting.lenth import Lenth, lenth
 from hexapod_doe.fitting.model import estimable_terms, model_matrix, parse_terms
@@ -109,6 +110,13 @@ def _initial(state: Pipeline) -> None:
             state.caveats.append(
                 f'{", ".join(hidden)} cannot be told from the differences between blocks and is '
                 'left out.'
+            )
+        found, terms = terms, without_arbitrary(table.levels, terms)
+        if len(terms) < len(found):
+            state.caveats.append(
+                'The interactions are confounded with each other in part, and the cases are too '
+                'few to tell them apart: the models leave them out. Intervals of the estimands '
+                'allow for them, those of other statements hold only if they are nil.'
             )
         description = f'all {len(terms)} terms that the cases can estimate'
         if options.max_order:

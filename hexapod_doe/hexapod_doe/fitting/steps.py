@@ -10,6 +10,7 @@ import pandas as pd
 
 from hexapod_doe.analysis.results import MainEffect, Removal, Step
 from hexapod_doe.designs.terms import CONSTANT
+from hexapod_doe.fitting.alias_matrix import partial_aliases, with_partial_aliases
 from hexapod_doe.fitting.elimination import Dropped
 from hexapod_doe.fitting.model import alias_strings
 from hexapod_doe.fitting.pipeline import FittedStep
@@ -69,7 +70,11 @@ def aliases_of(
     """Return the alias string of every term that any step fitted or dropped."""
     terms = dict.fromkeys(term for step in steps for term in step.fit.terms)
     terms |= dict.fromkeys(item.term for item in dropped)
-    return alias_strings(table.levels, terms)
+    partial = partial_aliases(table.levels, steps[0].fit.terms)
+    return {
+        term: with_partial_aliases(text, partial.get(term, {}))
+        for term, text in alias_strings(table.levels, terms).items()
+    }
 
 
 def main_effects(table: RunTable, s: float | None) -> tuple[MainEffect, ...]:

@@ -7,6 +7,7 @@ import pandas as pd
 
 from hexapod_doe.analysis.results import Analysis, Step
 from hexapod_doe.designs.terms import CONSTANT
+from hexapod_doe.fitting.alias_matrix import short_alias
 from hexapod_doe.reporting.formats import MISSING, aligned, interval, number, probability, signed
 from hexapod_doe.reporting.tables import Table
 
@@ -51,7 +52,7 @@ def model_terms(analysis: Analysis) -> Table:
         'An effect is the mean response with the term at +1 minus that at −1, twice the '
         f'coefficient. A sum is all that the cases can see of its terms{scale}.',
         {
-            'term': ['constant' if name == CONSTANT else name for name in names],
+            'term': ['constant' if name == CONSTANT else short_alias(name, 8) for name in names],
             'effect': aligned(columns['effects'], 4, sign=True),
             'coefficient': aligned(columns['coef'], 5, sign=True),
             'standard error': [number(value) for value in columns['se']],
@@ -73,7 +74,7 @@ def elimination(analysis: Analysis) -> Table | None:
         'At each step the term with the largest p goes, if no remaining term contains it.',
         {
             'step': [f'{removal.step}' for removal in dropped],
-            'term': [removal.alias for removal in dropped],
+            'term': [short_alias(removal.alias, 8) for removal in dropped],
             'p': [probability(removal.p) for removal in dropped],
             's afterwards': aligned([removal.s for removal in dropped], 4),
             'R² afterwards': [number(removal.r2) for removal in dropped],

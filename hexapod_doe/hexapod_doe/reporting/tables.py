@@ -10,11 +10,14 @@ from pathlib import Path
 import pandas as pd
 
 from hexapod_doe.analysis.results import Analysis, Prediction
+from hexapod_doe.fitting.alias_matrix import short_alias
 from hexapod_doe.reporting.formats import MISSING, aligned, chance, interval
 from hexapod_doe.reporting.standing import Standing, standings
 
 MAX_ROWS = 512
 """Sets listed on the page; the CSV has all."""
+MAX_NAMES = 8
+"""Terms of one sum that the page lists."""
 
 
 @dataclass(frozen=True)
@@ -78,10 +81,11 @@ def aliases(analysis: Analysis) -> Table | None:
     return Table(
         'aliases',
         'What the cases cannot tell apart',
-        f'{analysis.design.defining_relation}. Each row is one contrast: the data see the sum.',
+        f'{analysis.design.defining_relation}. Each row is one contrast: the data see the sum, in '
+        'which a number is the share that the contrast holds of a term.',
         {
             'named after': list(mixed),
-            'sum': list(mixed.values()),
+            'sum': [short_alias(text, MAX_NAMES) for text in mixed.values()],
             'in the final model': [
                 'yes' if term in analysis.final.terms else '' for term in mixed
             ],

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from hexapod_doe.analysis.results import Analysis
 from hexapod_doe.designs.planner import FULL_TRAINING
+from hexapod_doe.fitting.alias_matrix import short_alias
 from hexapod_doe.reporting.formats import (
     MISSING,
     capitalised,
@@ -203,10 +204,12 @@ def _model(analysis: Analysis) -> str:
 
 def _alias_warning(analysis: Analysis) -> str:
     named = (
-        analysis.final.terms if analysis.attribution is None else analysis.attribution.ambiguous
+        analysis.final.terms
+        if analysis.attribution is None
+        else (*analysis.attribution.ambiguous, *analysis.attribution.partial)
     )
     texts = (analysis.design.aliases.get(term, term) for term in named)
-    mixed = [text for text in texts if ' ' in text]
+    mixed = [short_alias(text) for text in texts if ' ' in text]
     text = (
         f'{analysis.choice} depends on which name a confounded sum is given '
         f'({listing(mixed, 3)}): more cases can separate them (plan augment).'

@@ -11,6 +11,7 @@ import pandas as pd
 from hexapod_doe.analysis.findings import TwoPart
 from hexapod_doe.analysis.results import Analysis, DesignSummary
 from hexapod_doe.designs.aliases import defining_relation, defining_words, resolution
+from hexapod_doe.fitting.alias_matrix import short_alias, with_partial_aliases
 from hexapod_doe.fitting.model import centre_points, corners, labels
 from hexapod_doe.fitting.transform import BOUNDS
 from hexapod_doe.tables.table import BLOCK, RunTable
@@ -90,6 +91,7 @@ def model_caveats(analysis: Analysis) -> list[str]:
                 f'The interval of λ, {low:.2g} to {high:.2g}, ends where the search ended: these '
                 'runs hardly tell λ.'
             )
+    caveats += _partial_caveat(analysis)
     attribution = analysis.attribution
     if attribution is not None and attribution.ambiguous:
         names = ', '.join(' or '.join(group) for group in attribution.ambiguous.values())
@@ -102,6 +104,25 @@ def model_caveats(analysis: Analysis) -> list[str]:
             f'predictions depend on the name; best under some name: {winners}.'
         )
     return caveats
+
+
+def _partial_caveat(analysis: Analysis) -> list[str]:
+    partial = {} if analysis.attribution is None else analysis.attribution.partial
+    if not partial:
+        return []
+    term, others = next(iter(partial.items()))
+    named = short_alias(with_partial_aliases(term, others), _NAMED)
+    average = ''
+    if analysis.averaging is not None:
+        average = (
+            ' The average over models, which weighs those interactions as well, chooses '
+            f'{analysis.averaging.choice}.'
+        )
+    return [
+        f'{len(partial)} of the effects hold parts of interactions that the model leaves out '
+        f'({named}): they are right only if those interactions are nil, and no prediction is '
+        f'alias-safe.{average}'
+    ]
 
 
 def _block_caveats(analysis: Analysis) -> list[str]:

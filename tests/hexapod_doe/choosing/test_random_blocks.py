@@ -93,6 +93,6 @@ def test_the_bootstrap_draws_whole_seeds() -> None:
         levels, seed, y = campaign(rng)
         rows, _ = build_rows(levels.assign(**{RESPONSE: y, BLOCK: seed}), list('ABCDEFG'))
         table = RunTable('', '', 'y', tuple('ABCDEFG'), rows, block_column='seed')
-        mean = estimates(table, 0.9, rng)[0].predictions['C'].ci
+        mean = estimates(table, 0.9)[0].predictions['C'].ci
         covered.append(mean[0] <= 350 <= mean[1])
     assert np.mean(covered) == pytest.approx(0.9, abs=0.08)  # its error is 0.04

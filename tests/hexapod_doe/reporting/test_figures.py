@@ -8,6 +8,7 @@ from dataclasses import replace
 import matplotlib as mpl
 import numpy as np
 import pytest
+from hexapod_doe.fitting.alias_matrix import short_alias
 from hexapod_doe.reporting.figures import (
     effects,
     learning,
@@ -17,7 +18,6 @@ from hexapod_doe.reporting.figures import (
     significance,
 )
 from hexapod_doe.reporting.figures.chart import Chart
-from hexapod_doe.reporting.figures.parts import short_alias
 from hexapod_doe.reporting.figures.style import NARROW, RC, ROLES, WIDE
 from hexapod_doe.reporting.standing import standings
 

@@ -24,7 +24,6 @@ NOISE = 20.0
 @pytest.fixture(autouse=True)
 def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr('hexapod_doe.choosing.averaging.SWEEPS', 20)
-    monkeypatch.setattr('hexapod_doe.fitting.estimate.RESAMPLES', 200)
 
 
 @pytest.fixture

@@ -37,7 +37,6 @@ def campaign(replicates: int = 4, name: str = 'eighth', seed: int = 5) -> pd.Dat
 def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Leave out the report, which its own tests draw, and shorten what is sampled."""
     monkeypatch.setattr('hexapod_doe.choosing.averaging.SWEEPS', 20)
-    monkeypatch.setattr('hexapod_doe.fitting.estimate.RESAMPLES', 200)
     monkeypatch.setattr(analyze, 'write_report', lambda analysis, out: out / 'index.html')
 
 

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from hexapod_doe.analysis.results import Analysis, MainEffect
 from hexapod_doe.designs.terms import is_interaction, order
+from hexapod_doe.fitting.alias_matrix import short_alias
 from hexapod_doe.reporting.figures.chart import Chart
 from hexapod_doe.reporting.figures.parts import (
     canvas,
@@ -18,7 +19,6 @@ from hexapod_doe.reporting.figures.parts import (
     factor_label,
     grid,
     is_wide,
-    short_alias,
     unit_label,
 )
 from hexapod_doe.reporting.figures.significance import sizes

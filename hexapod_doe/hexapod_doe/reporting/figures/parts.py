@@ -62,13 +62,6 @@ def grid(
     return figure, list(axes[:panels])
 
 
-def short_alias(text: str, limit: int = 3) -> str:
-    """Return an alias string cut after some terms: `ABD + ACF + AEG + 4 more`."""
-    parts = text.split(' ')  # term, sign, term, sign, term ...
-    rest = (len(parts) + 1) // 2 - limit
-    return text if rest < 2 else f'{" ".join(parts[: 2 * limit - 1])} + {rest} more'
-
-
 def is_wide(width: float) -> bool:
     """Tell whether there is room for words beside letters."""
     return width > 0.75 * WIDE
