@@ -9,17 +9,18 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from hexapod_cpg.mapping import command_from_action
+from hexapod_cpg.mapping import ACTION_SIZE, command_from_action
 from hexapod_cpg.messages import command_to_message
 from hexapod_interfaces.msg import CpgCommand, StepOutcome
 from hexapod_node.lock_step import LockStep
+from hexapod_node.raw_topics import message_class
 from hexapod_node.stamps import time_message
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from numpy.typing import NDArray
 
 from hexapod_agent.config import AgentConfig
-from hexapod_agent.messages import decode, message_class, outcome_from_message
-from hexapod_agent.observation import ACTION_SIZE, ObservationSpec
+from hexapod_agent.messages import decode, outcome_from_message
+from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.player import Agent
 
 if TYPE_CHECKING:

@@ -9,12 +9,12 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from hexapod_cpg.mapping import Command, command_from_action
+from hexapod_cpg.mapping import ACTION_SIZE, Command, command_from_action
 from numpy.typing import NDArray
 
 from hexapod_agent import checkpoint
 from hexapod_agent.config import AgentConfig
-from hexapod_agent.observation import ACTION_SIZE, ObservationSpec
+from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.policies import Policy, trained_policy
 
 

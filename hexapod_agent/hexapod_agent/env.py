@@ -9,17 +9,17 @@ from typing import Any
 import gymnasium
 import numpy as np
 from hexapod_cpg.cpg import Cpg
-from hexapod_cpg.mapping import command_from_action
+from hexapod_cpg.mapping import ACTION_SIZE, command_from_action
 from hexapod_sim.film import Frame
 from hexapod_sim.picture import Picture
 from hexapod_sim.robot import CONTROL_PERIOD_NS, NEUTRAL_POSE, SUBSTEPS
-from hexapod_sim.sensors import CHANNEL_READERS, read
+from hexapod_sim.sensors import observe
 from hexapod_sim.task import LineTask, Outcome, episode_seed
 from hexapod_sim.viewer import has_display
 from numpy.typing import NDArray
 
 from hexapod_agent.config import AgentConfig
-from hexapod_agent.observation import ACTION_SIZE, ObservationError, ObservationSpec
+from hexapod_agent.observation import ObservationError, ObservationSpec
 
 Observation = NDArray[np.float32]
 
@@ -45,7 +45,7 @@ def read_observation(
     Raises:
         ObservationError: A reading is not finite.
     """
-    readings = read(task.simulation, (key for key in spec.readings if key in CHANNEL_READERS))
+    readings = observe(task.simulation, spec.channels)
     readings['oscillator'] = np.concatenate((x, y))
     readings['line_offset'] = np.array([task.line_offset])
     return spec.assemble(readings, previous_action)

@@ -20,8 +20,10 @@ from hexapod_node.conditions import until_true
 from hexapod_node.coroutines import start, until
 from hexapod_node.matching import unheard
 from hexapod_node.qos import LOCK_STEP
+from hexapod_node.raw_topics import message_class
 from hexapod_node.spin import serving, spin_once
 from hexapod_node.stamps import to_nanoseconds
+from hexapod_sim.sensor_table import CHANNELS
 from hexapod_sim.sim_node import SimNode
 from nav_msgs.msg import Odometry
 from rclpy.action import ActionClient
@@ -31,8 +33,7 @@ from rclpy.task import Future
 
 from hexapod_agent.agent_node import AgentNode
 from hexapod_agent.evaluation import Episode, EpisodeMeter, GraphError
-from hexapod_agent.messages import decode, message_class, outcome_from_message
-from hexapod_agent.observation import CHANNELS
+from hexapod_agent.messages import decode, outcome_from_message
 
 _MEASURED = ('joint_velocities', 'joint_torques', 'line_offset')
 _CHANNELS = tuple(c for c in CHANNELS if not set(_MEASURED).isdisjoint(c.readings))

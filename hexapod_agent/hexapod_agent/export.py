@@ -16,12 +16,13 @@ import onnx
 from hexapod_cpg.mapping import ACTION_SIZE
 from hexapod_sim.command_line import CommandLine, file, output_file
 from hexapod_sim.robot import CONTROL_PERIOD_NS, JOINTS, LEGS
+from hexapod_sim.sensor_table import PREVIOUS_ACTION
 from numpy.typing import NDArray
 from onnx import TensorProto, helper, numpy_helper
 
 from hexapod_agent import checkpoint
 from hexapod_agent.layers import NORM_EPSILON
-from hexapod_agent.observation import PREVIOUS_ACTION, ObservationSpec
+from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.training import Trainer
 
 _OPSET = 17
@@ -137,19 +138,19 @@ def contract(trainer: Trainer) -> dict[str, str]:
 
 def inputs_of(spec: ObservationSpec) -> list[dict[str, Any]]:
     """Return a row per input: where it comes from, its size, unit and normalisation."""
-    rows, start = [], 0
+    rows = []
     for channel in spec.channels:
-        for key, unit in zip(channel.readings, channel.units, strict=True):
+        for quantity in channel.quantities:
+            key = quantity.name
             row = {
                 'input': key, 'channel': channel.name, 'letter': channel.letter,
                 'topics': channel.topics, 'message_type': channel.message_type,
-                'size': spec.sizes[key], 'unit': unit,
-                'scale': float(spec.scale[start]), 'center': float(spec.center[start]),
+                'size': quantity.size, 'unit': quantity.unit,
+                'scale': quantity.scale, 'center': quantity.center,
             }  # fmt: skip
             if key == PREVIOUS_ACTION:
                 row['first'] = 'zeros, until there is one'
             rows.append(row)
-            start += spec.sizes[key]
     return rows
 
 

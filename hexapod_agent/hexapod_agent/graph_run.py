@@ -21,6 +21,7 @@ from hexapod_node.stamps import time_message
 from hexapod_node.subscriptions import subscribed_topics
 from hexapod_node.timers import call_every
 from hexapod_sim.robot import CONTROL_PERIOD_NS
+from hexapod_sim.sensor_table import CHANNELS
 from hexapod_sim.task import episode_seed
 
 from hexapod_agent import run_checkpoint
@@ -28,7 +29,7 @@ from hexapod_agent.checkpoint import save
 from hexapod_agent.config import AgentConfig
 from hexapod_agent.control_loop import OUTCOME, ControlLoop
 from hexapod_agent.event_log import EventLog
-from hexapod_agent.observation import CHANNELS, ObservationSpec
+from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.peers import PeerError
 from hexapod_agent.player import Agent
 from hexapod_agent.provenance import provenance

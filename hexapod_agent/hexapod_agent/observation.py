@@ -1,141 +1,14 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The sensor table: every channel that an agent can observe, and the vector made of a chosen set.
+"""What an agent observes: the vector that is made of a chosen set of the sensor table."""
 
-Subscriptions, input sizes, factors of the experiment and report labels all read this table.
-"""
-
-import math
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
-from hexapod_cpg.mapping import ACTION_SIZE
-from hexapod_sim.robot import (
-    BASE_FRAME,
-    FOOT_FRAMES,
-    GRAVITY,
-    HEIGHT_FRAME,
-    HEIGHT_RANGE_MAX,
-    IMU_FRAME,
-    LEGS,
-    NO_LOAD_SPEED,
-    ODOM_FRAME,
-    TORQUE_LIMIT,
-    TOTAL_MASS,
-)
+from hexapod_sim.channel import Channel
+from hexapod_sim.sensor_table import CHANNELS, LETTERS, PREVIOUS_ACTION
 from numpy.typing import NDArray
-
-PREVIOUS_ACTION = 'previous_action'
-
-
-@dataclass(frozen=True)
-class Channel:
-    """One row of the sensor table.
-
-    A number x is observed as clip((x - center) / scale, -1, 1).
-
-    Attributes:
-        letter: Factor of the experiment; empty for a channel that is always observed.
-        name: What the channel measures, as reports print it.
-        topics: Relative topic names that carry it; empty if nothing has to be subscribed to.
-        message_type: ROS type of those topics.
-        readings: Keys of its values in a mapping of readings, in the order of the observation.
-        sizes: Count of numbers of each reading.
-        units: Unit of each reading.
-        scales: Deviation from the center that is observed as 1, for each reading, in its unit.
-        device: What yields it on a physical robot.
-        centers: Value that is observed as 0, for each reading, in its unit; empty for zeros.
-        limits: Largest magnitude that a working device gives in walking, for each reading, in its
-            unit; what lies beyond is in another unit. Infinite where the norm tells, and empty if
-            nothing measures the channel.
-        frames: Frame of each topic; empty if its values have no axes, as joint angles.
-    """
-
-    letter: str
-    name: str
-    topics: tuple[str, ...]
-    message_type: str
-    readings: tuple[str, ...]
-    sizes: tuple[int, ...]
-    units: tuple[str, ...]
-    scales: tuple[float, ...]
-    device: str
-    centers: tuple[float, ...] = ()
-    limits: tuple[float, ...] = ()
-    frames: tuple[str, ...] = ()
-
-    @property
-    def size(self) -> int:
-        """Count of numbers that the channel adds to the observation."""
-        return sum(self.sizes)
-
-    @property
-    def unit(self) -> str:
-        """Units of the readings, for tables."""
-        return ', '.join(self.units)
-
-    @property
-    def scale(self) -> str:
-        """Scales of the readings, for tables."""
-        return ', '.join(f'{scale:g}' for scale in self.scales)
-
-
-CHANNELS = (
-    Channel(
-        '', 'joint angles and velocities', ('joint_states',), 'sensor_msgs/msg/JointState',
-        ('joint_angles', 'joint_velocities'), (18, 18), ('rad', 'rad/s'), (1.0, NO_LOAD_SPEED),
-        'joint encoders', limits=(math.pi / 2, 2 * NO_LOAD_SPEED),
-    ),
-    Channel(
-        '', 'oscillator state', ('cpg/state',), 'hexapod_interfaces/msg/CpgState',
-        ('oscillator',), (12,), ('1',), (1.2,), 'none (computed)', limits=(2.0,),
-    ),
-    Channel(
-        '', 'previous action', (), '', (PREVIOUS_ACTION,), (ACTION_SIZE,), ('1',), (1.0,), 'none',
-    ),
-    Channel(
-        '', 'line offset', ('line_offset',), 'hexapod_interfaces/msg/LineOffset',
-        ('line_offset',), (1,), ('m',), (1.0,), 'line sensor or localisation',
-        limits=(10.0,), frames=(ODOM_FRAME,),
-    ),
-    Channel(
-        'A', 'joint torques', ('joint_torques',), 'sensor_msgs/msg/JointState',
-        ('joint_torques',), (18,), ('N·m',), (TORQUE_LIMIT,), '18 current sensors',
-        limits=(2 * TORQUE_LIMIT,),
-    ),
-    Channel(
-        'B', 'body linear velocity', ('body/twist',), 'geometry_msgs/msg/TwistStamped',
-        ('linear_velocity',), (3,), ('m/s',), (0.5,), 'estimator or optical flow',
-        limits=(2.0,), frames=(BASE_FRAME,),
-    ),
-    Channel(
-        'C', 'body orientation', ('imu/data',), 'sensor_msgs/msg/Imu',
-        ('orientation',), (4,), ('1',), (1.0,), 'IMU with fusion',
-        limits=(math.inf,), frames=(IMU_FRAME,),
-    ),
-    Channel(
-        'D', 'body angular velocity', ('imu/data_raw',), 'sensor_msgs/msg/Imu',
-        ('angular_velocity',), (3,), ('rad/s',), (2.0,), 'IMU',
-        limits=(8.0,), frames=(IMU_FRAME,),
-    ),
-    Channel(
-        'E', 'body height', ('body/height',), 'sensor_msgs/msg/Range',
-        ('height',), (1,), ('m',), (0.05,), 'range finder', (0.13,),
-        limits=(HEIGHT_RANGE_MAX,), frames=(HEIGHT_FRAME,),
-    ),
-    Channel(
-        'F', 'foot forces', tuple(f'foot_force/{leg}' for leg in LEGS),
-        'geometry_msgs/msg/WrenchStamped', ('foot_forces',), (12,), ('N',), (20.0,),
-        'six load cells', limits=(8 * TOTAL_MASS * GRAVITY,), frames=FOOT_FRAMES,
-    ),
-    Channel(
-        'G', 'foot contacts', ('foot_contacts',), 'hexapod_interfaces/msg/FootContacts',
-        ('foot_contacts',), (6,), ('1',), (1.0,), 'six switches', limits=(1.0,),
-    ),
-)  # fmt: skip
-LETTERS = ''.join(channel.letter for channel in CHANNELS)
 
 
 class ObservationError(ValueError):
@@ -182,14 +55,12 @@ class ObservationSpec:
         self.scale = np.empty(self.size)
         start = 0
         for channel in self.channels:
-            centers = channel.centers or (0.0,) * len(channel.readings)
-            columns = (channel.sizes, channel.scales, centers)
-            for key, size, scale, center in zip(channel.readings, *columns, strict=True):
-                part = slice(start, start + size)
-                self._slices[key] = (channel, part)
-                self.scale[part] = scale
-                self.center[part] = center
-                start += size
+            for quantity in channel.quantities:
+                part = slice(start, start + quantity.size)
+                self._slices[quantity.name] = (channel, part)
+                self.scale[part] = quantity.scale
+                self.center[part] = quantity.center
+                start += quantity.size
         self.readings = tuple(key for key in self._slices if key != PREVIOUS_ACTION)
         self.sizes = {key: part.stop - part.start for key, (_, part) in self._slices.items()}
 

@@ -20,18 +20,20 @@ from hexapod_node.invalid_message import InvalidMessageError
 from hexapod_node.newest import Input, NewestSamples
 from hexapod_node.parameters import Parameter, to_messages
 from hexapod_node.qos import COMMAND
+from hexapod_node.raw_topics import message_class
 from hexapod_node.stamps import time_message
 from hexapod_node.sync import max_age, phase
 from hexapod_node.ticker import Tick, Ticker
+from hexapod_sim.channel import Channel
 from hexapod_sim.robot import CONTROL_PERIOD_NS
+from hexapod_sim.sensor_table import CHANNELS
 from rcl_interfaces.srv import SetParametersAtomically
 
 from hexapod_agent.contract.limits import Limits, parse_frames
 from hexapod_agent.contract.messages import listen_and_check
 from hexapod_agent.contract.watch import MessageWatch
 from hexapod_agent.deployment import DeployedAgent
-from hexapod_agent.messages import decode, message_class
-from hexapod_agent.observation import CHANNELS, Channel
+from hexapod_agent.messages import decode
 
 if TYPE_CHECKING:
     from hexapod_node.diagnostics import Health
@@ -44,10 +46,7 @@ _THROTTLE_S = 1.0
 
 def age_name(channel: Channel) -> str:
     """Return the parameter that says how old a sample of a channel may be."""
-    topic = channel.topics[0]
-    # Topics of one device that differ in their last word share a parameter.
-    common = topic.rsplit('/', 1)[0] if len(channel.topics) > 1 else topic
-    return f'max_age.{common.replace("/", "_")}'
+    return f'max_age.{channel.key}'
 
 
 _HEARD = tuple(channel for channel in CHANNELS if channel.topics)

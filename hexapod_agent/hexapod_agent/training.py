@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import torch
+from hexapod_cpg.mapping import ACTION_SIZE
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from hexapod_sim.task import Outcome
 from numpy.typing import NDArray
@@ -21,7 +22,7 @@ from numpy.typing import NDArray
 from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.ddpg import Ddpg
 from hexapod_agent.noise import OrnsteinUhlenbeckNoise
-from hexapod_agent.observation import ACTION_SIZE, ObservationSpec
+from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.policies import trained_policy
 from hexapod_agent.replay import Batch, ReplayBuffer
 from hexapod_agent.summary import EpisodeRecord, EpisodeSummary

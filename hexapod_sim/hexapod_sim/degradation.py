@@ -6,13 +6,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-Kind = Literal['vector', 'quaternion', 'switch']
-"""Numbers that errors are added to, an orientation x y z w that they turn, or on and off."""
+from hexapod_sim.channel import Kind
 
 _MOST_NUMBERS = 18  # of one reading: the joints
 _MOST_STEPS = 2.0**52

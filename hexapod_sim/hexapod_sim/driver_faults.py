@@ -5,26 +5,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from hexapod_sim.driver_channels import CHANNELS, JOINT_FIELDS, read, write
-from hexapod_sim.robot import GRAVITY
+from hexapod_sim.channel import Channel
+from hexapod_sim.joint_layout import JOINT_FIELDS
+from hexapod_sim.message_fields import read, write
+from hexapod_sim.sensor_table import CHANNELS
+from hexapod_sim.units import OTHER_UNITS
 
-# Another unit of each channel's first reading: how many of it make one of ours.
-_OTHER_UNITS = {
-    'position': 180.0 / math.pi,  # degrees
-    'offset': 1000.0,  # mm
-    'effort': 1000.0,  # N mm
-    'twist.linear': 1000.0,  # mm/s
-    'angular_velocity': 180.0 / math.pi,  # degrees/s
-    'range': 1000.0,  # mm
-    'wrench.force': 1000.0 / GRAVITY,  # gf
-    'linear_acceleration': 1.0 / GRAVITY,  # g
-}
 STOPPED = 'stopped'
 STALE_STAMPS = 'stale_stamps'
 # In the driver, not in its messages.
@@ -60,30 +51,37 @@ def _wrong_names(message: Any) -> None:
     message.name = [f'joint_{index}' for index in range(len(message.name))]
 
 
-def faults(channel: str) -> dict[str, Callable[[Any], None]]:
+def faults(channel: Channel) -> dict[str, Callable[[Any], None]]:
     """Return what can go wrong with the messages of a channel; each changes one in place."""
-    driver = CHANNELS[channel]
-    reading = driver.readings[0]
+    observed = channel.observed[0]
     found: dict[str, Callable[[Any], None]] = {}
-    if reading.kind != 'switch':
-        found['nan'] = _nan(reading.path)
-    if driver.has_joints:
+    if observed.kind != 'switch':
+        found['nan'] = _nan(observed.path)
+    if channel.has_joints:
         found |= {'wrong_length': _wrong_length, 'wrong_names': _wrong_names}
-    elif reading.kind != 'switch':
+    elif channel.frames:
         found['wrong_frame'] = _wrong_frame
-    if reading.kind == 'quaternion':
-        found['bad_quaternion'] = _scaled(reading.path, 1.2)
-    if channel.startswith('imu/'):
+    if observed.kind == 'quaternion':
+        found['bad_quaternion'] = _scaled(observed.path, 1.2)
+    if 'linear_acceleration' in (field.path for field in channel.fields):
         found['flipped_gravity'] = _scaled('linear_acceleration', -1.0)
-    unit = 'linear_acceleration' if reading.kind == 'quaternion' else reading.path
-    if unit in _OTHER_UNITS:
-        found['wrong_unit'] = _scaled(unit, _OTHER_UNITS[unit])
+    # An orientation has no unit: what comes along with it does.
+    measured = next((field for field in channel.fields if field.unit != '1'), None)
+    if measured is not None:
+        factors = [factor for _, factor in OTHER_UNITS[measured.unit]]
+        found['wrong_unit'] = _scaled(measured.path, max(factors))
     return found
 
 
-def fault_names(channel: str) -> tuple[str, ...]:
+def fault_names(channel: Channel) -> tuple[str, ...]:
     """Return the names of all faults that a channel's driver can have."""
     return (*_OF_THE_DRIVER, *faults(channel))
 
 
-ALL_FAULTS = tuple(dict.fromkeys(name for channel in CHANNELS for name in fault_names(channel)))
+DEVICES = {
+    channel.device_topic: channel for channel in CHANNELS if channel.source in ('robot', 'task')
+}
+"""Channels that a driver can take the place of, by the topic of their device."""
+ALL_FAULTS = tuple(
+    dict.fromkeys(name for channel in DEVICES.values() for name in fault_names(channel))
+)

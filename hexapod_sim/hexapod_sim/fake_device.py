@@ -9,8 +9,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from hexapod_sim.degradation import Degradation, Distortion
-from hexapod_sim.driver_channels import CHANNELS, JointLayout, read, write
-from hexapod_sim.driver_faults import fault_names, faults
+from hexapod_sim.driver_faults import DEVICES, fault_names, faults
+from hexapod_sim.joint_layout import JointLayout
+from hexapod_sim.message_fields import read, write
 from hexapod_sim.robot import JOINTS
 
 OUR_ORDER, REVERSED, SHUFFLED = 'ours', 'reversed', 'shuffled'
@@ -31,12 +32,12 @@ class FakeDevice:
             ValueError: one does not suit the channel; the text names it.
         """
         self.channel: str = settings['channel']
-        self._driver = CHANNELS[self.channel]
-        self.topics = self._driver.topics
+        self._row = DEVICES[self.channel]
+        self.topics = self._row.topics
         self._own_topic: str = settings['topic'] or f'driver/{self.channel}'
         self._own_frame: str = settings['frame']
         self._seed: int = settings['seed']
-        self._faults = faults(self.channel)
+        self._faults = faults(self._row)
         self._layout = self._joint_layout(settings)
         self._degradations = self._all_degradations(settings)
         self.check_fault(settings['fault'])
@@ -63,7 +64,7 @@ class FakeDevice:
         Raises:
             ValueError: the text says which ones it can have.
         """
-        allowed = fault_names(self.channel)
+        allowed = fault_names(self._row)
         if fault and fault not in allowed:
             raise ValueError(
                 f"fault '{fault}': {self.channel} cannot have it, expected one of "
@@ -75,16 +76,16 @@ class FakeDevice:
         errors = ('noise', 'bias', 'quantisation')
         distortions = [Distortion(*(settings[name] for name in errors))]
         velocity = [settings[f'velocity_{name}'] for name in errors]
-        readings = self._driver.readings
-        if len(readings) > 1:
+        fields = self._row.observed
+        if len(fields) > 1:
             distortions.append(Distortion(*velocity))
         elif any(velocity):
             raise ValueError(f'velocity_*: expected channel joint_states, not {self.channel}')
-        streams = iter(range(len(readings) * len(self.topics)))
+        streams = iter(range(len(fields) * len(self.topics)))
         return {
             topic: {
-                reading.path: Degradation(distortion, reading.kind, self._seed, next(streams))
-                for reading, distortion in zip(readings, distortions, strict=True)
+                field.path: Degradation(distortion, field.kind, self._seed, next(streams))
+                for field, distortion in zip(fields, distortions, strict=True)
             }
             for topic in self.topics
         }
@@ -93,7 +94,7 @@ class FakeDevice:
         """Return the device's own order and names of the joints; None where they are ours."""
         order, prefix = settings['joint_order'], settings['joint_prefix']
         extra = settings['extra_joints']
-        if not self._driver.has_joints:
+        if not self._row.has_joints:
             if order != OUR_ORDER or prefix or extra:
                 raise ValueError(f'joint_*: expected a channel with joints, not {self.channel}')
             return None

@@ -12,10 +12,10 @@ from typing import Any
 
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticStatus
-from hexapod_interfaces.msg import LineOffset
 from hexapod_node.diagnostics import Diagnostics, Health
 from hexapod_node.parameters import Parameter, declare
 from hexapod_node.qos import DRIVER, LOCK_STEP
+from hexapod_node.raw_topics import message_class
 from hexapod_node.spin import run
 from hexapod_node.stamps import time_message, to_nanoseconds
 from hexapod_node.sync import LOCKSTEP, REALTIME
@@ -26,20 +26,15 @@ from rclpy.parameter import Parameter as RclpyParameter
 from rclpy.publisher import Publisher
 from rclpy.serialization import serialize_message
 
-from hexapod_sim.driver_channels import CHANNELS
-from hexapod_sim.driver_faults import ALL_FAULTS, STALE_STAMPS, STOPPED
+from hexapod_sim.driver_faults import ALL_FAULTS, DEVICES, STALE_STAMPS, STOPPED
 from hexapod_sim.fake_device import OUR_ORDER, REVERSED, SHUFFLED, FakeDevice
-from hexapod_sim.messages import SENSOR_TOPICS
 from hexapod_sim.sample_line import SampleLine, Timing
 
-_TYPES = {sensor.name: sensor.message_type for sensor in SENSOR_TOPICS} | {
-    'line_offset': LineOffset
-}
 _UNIT = 'SI unit of the channel'
 _FLUSH_PERIOD_S = 0.005
 
 PARAMETERS = (
-    Parameter('channel', 'imu/data', 'what the device measures', choices=tuple(CHANNELS)),
+    Parameter('channel', 'imu/data', 'what the device measures', choices=tuple(DEVICES)),
     Parameter('topic', '', 'its own topic; empty: driver/<channel>'),
     Parameter('frame', '', "its own frame, with _<leg> of load cells; empty: the sim's"),
     Parameter(
@@ -140,12 +135,13 @@ class FakeDriverNode(Node):
         qos = LOCK_STEP if lock_step else DRIVER
         timing = Timing(value['delay'], value['dropout'], value['rate'], hold=lock_step)
         self._outlets = []
+        kind = message_class(DEVICES[self._device.channel].message_type)
         for index, topic in enumerate(self._device.topics):
             own = self._device.own_topic(topic)
-            publisher = self.create_publisher(_TYPES[topic], own, qos)
+            publisher = self.create_publisher(kind, own, qos)
             # A device of six cells loses a sample of one of them, not of all.
             outlet = _Outlet(topic, publisher, SampleLine(timing, value['seed'] + index))
-            self.create_subscription(_TYPES[topic], topic, partial(self._on_sample, outlet), qos)
+            self.create_subscription(kind, topic, partial(self._on_sample, outlet), qos)
             self._outlets.append(outlet)
         self.add_on_set_parameters_callback(self._on_set)
         if lock_step:

@@ -5,6 +5,7 @@
 
 import copy
 import math
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -34,12 +35,12 @@ class Simulation:
     Attributes:
         model: The compiled hexapod.xml.
         data: State of the model; sensor readings are those at the end of the last period.
-        sensor_blocks: Where each group of sensors lies in ``data.sensordata``.
+        sensor_blocks: Where the sensors of each reading lie in ``data.sensordata``.
     """
 
     def __init__(self) -> None:
         model = mujoco.MjModel.from_xml_path(str(_MODEL_PATH))
-        self.sensor_blocks = sensors.locate_blocks(model)
+        self.sensor_blocks = _locate_blocks(model)
         self._flags_with_sensors = model.opt.disableflags
         self._steps_per_target = whole_ratio(robot.TARGET_PERIOD_NS, robot.PHYSICS_STEP_NS)
         self._bind(model, mujoco.MjData(model))
@@ -163,6 +164,21 @@ def roll_pitch_yaw(qx: float, qy: float, qz: float, qw: float) -> tuple[float, f
     pitch = math.asin(max(-1.0, min(1.0, 2 * (qw * qy - qz * qx))))
     yaw = math.atan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz))
     return roll, pitch, yaw
+
+
+def _locate_blocks(model: mujoco.MjModel) -> dict[str, slice]:
+    """Return where the model's sensors of each reading lie in ``sensordata``.
+
+    Raises:
+        ValueError: The model does not list the sensors of a reading in a row.
+    """
+    blocks = {}
+    for reading, names in sensors.MODEL_SENSORS.items():
+        spans = [(int(s.adr[0]), int(s.adr[0] + s.dim[0])) for s in map(model.sensor, names)]
+        if any(left[1] != right[0] for left, right in pairwise(spans)):
+            raise ValueError(f'sensors of {reading!r}: expected them in a row in the model')
+        blocks[reading] = slice(spans[0][0], spans[-1][1])
+    return blocks
 
 
 def whole_ratio(period_ns: int, step_ns: int) -> int:

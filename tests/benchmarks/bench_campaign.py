@@ -20,9 +20,10 @@ from pathlib import Path
 
 import torch
 from hexapod_agent.config import AgentConfig
-from hexapod_agent.observation import ACTION_SIZE, ObservationSpec
+from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.replay import Batch
 from hexapod_agent.training import Trainer
+from hexapod_cpg.mapping import ACTION_SIZE
 from hexapod_doe.campaigns.folder import read_progress
 from hexapod_doe.campaigns.progress import State
 from rich.console import Console

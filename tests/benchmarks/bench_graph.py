@@ -19,7 +19,7 @@ import numpy as np
 import rclpy
 from hexapod_agent.config import AgentConfig
 from hexapod_agent.env import HexapodLine
-from hexapod_agent.observation import ACTION_SIZE
+from hexapod_cpg.mapping import ACTION_SIZE
 from hexapod_interfaces.action import TrainRun
 from rclpy.action import ActionClient
 from rclpy.experimental.events_executor import EventsExecutor

@@ -16,8 +16,9 @@ import numpy as np
 import torch
 from hexapod_agent.config import AgentConfig
 from hexapod_agent.env import HexapodLine
-from hexapod_agent.observation import ACTION_SIZE, ObservationSpec
+from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.training import Trainer
+from hexapod_cpg.mapping import ACTION_SIZE
 from rich.console import Console
 from rich.table import Table
 

@@ -14,13 +14,14 @@ import yaml
 from hexapod_agent.agent_node import AgentNode
 from hexapod_agent.config import AgentConfig
 from hexapod_agent.env import HexapodLine
-from hexapod_agent.observation import LETTERS, ObservationSpec
+from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.train import train_episode
 from hexapod_agent.training import Trainer
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import EpisodeResult
 from hexapod_node.subscriptions import subscribed_topics
+from hexapod_sim.sensor_table import LETTERS
 from hexapod_sim.sim_node import SimNode
 from sensor_msgs.msg import Imu, JointState
 

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from hexapod_agent.agent_node import AgentNode
 from hexapod_agent.config import AgentConfig
-from hexapod_agent.observation import LETTERS, ObservationSpec
+from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.play_node import PlayNode
 from hexapod_agent.training import Trainer
 from hexapod_cpg.cpg_node import CpgNode
@@ -27,6 +27,7 @@ from hexapod_interfaces.msg import CpgCommand
 from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.sample_gate import SampleGate
 from hexapod_node.stamps import time_message, to_nanoseconds
+from hexapod_sim.sensor_table import LETTERS
 from hexapod_sim.sim_node import SimNode
 from nav_msgs.msg import Odometry
 from rclpy.node import Node

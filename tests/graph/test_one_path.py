@@ -15,10 +15,10 @@ import gymnasium
 import numpy as np
 import pytest
 from hexapod_agent.agent_node import AgentNode
-from hexapod_agent.observation import LETTERS
 from hexapod_agent.training import Trainer
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
+from hexapod_sim.sensor_table import LETTERS
 from hexapod_sim.sim_node import SimNode
 from trajectory_msgs.msg import JointTrajectory
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from hexapod_agent.agent_node import AgentNode
 from hexapod_agent.config import AgentConfig
-from hexapod_agent.observation import LETTERS, ObservationSpec
+from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.policies import trained_policy
 from hexapod_agent.training import Trainer
 from hexapod_cpg.cpg_node import CpgNode
@@ -27,6 +27,7 @@ from hexapod_doe.shadow import main
 from hexapod_doe.shadow_node import ShadowNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_node.coroutines import start
+from hexapod_sim.sensor_table import LETTERS
 from hexapod_sim.sim_node import SimNode
 
 from hexapod_agent import checkpoint

@@ -14,16 +14,17 @@ from hexapod_agent.config import AgentConfig
 from hexapod_agent.contract.limits import Limits, parse_frames
 from hexapod_agent.contract.messages import listen_and_check
 from hexapod_agent.contract.report import SensorReport
-from hexapod_agent.observation import LETTERS, ObservationSpec
+from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.play_node import PlayNode
 from hexapod_agent.real_time import State
 from hexapod_agent.training import Trainer
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_cpg.locomotion import Motion
 from hexapod_node.coroutines import start
-from hexapod_sim.driver_channels import CHANNELS
+from hexapod_sim.driver_faults import DEVICES as ROWS
 from hexapod_sim.driver_faults import fault_names
 from hexapod_sim.fake_driver_node import FakeDriverNode
+from hexapod_sim.sensor_table import LETTERS
 from hexapod_sim.sim_node import SimNode
 from nav_msgs.msg import Odometry
 from rclpy.parameter import Parameter
@@ -72,7 +73,7 @@ def remaps(channels: list[str]) -> dict[str, str]:
     return {
         topic: DEVICES[channel].topic + topic.removeprefix(channel)
         for channel in channels
-        for topic in CHANNELS[channel].topics
+        for topic in ROWS[channel].topics
     }
 
 
@@ -82,7 +83,7 @@ def frames(channels: list[str]) -> str:
         f'{topic}={DEVICES[channel].frame}{topic.removeprefix(channel).replace("/", "_")}'
         for channel in channels
         if DEVICES[channel].frame
-        for topic in CHANNELS[channel].topics
+        for topic in ROWS[channel].topics
     )
 
 

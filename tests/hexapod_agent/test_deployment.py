@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from hexapod_agent.config import AgentConfig
 from hexapod_agent.deployment import DeployedAgent
-from hexapod_agent.observation import ACTION_SIZE, ObservationError, ObservationSpec
+from hexapod_agent.observation import ObservationError, ObservationSpec
 from hexapod_agent.policies import trained_policy
 from hexapod_agent.training import Trainer
-from hexapod_cpg.mapping import COMMAND_FIELDS, command_from_action
+from hexapod_cpg.mapping import ACTION_SIZE, COMMAND_FIELDS, command_from_action
 
 from hexapod_agent import checkpoint
 

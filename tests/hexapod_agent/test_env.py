@@ -15,8 +15,9 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AsyncVectorEnv, AutoresetMode, SyncVectorEnv
 from hexapod_agent.env import HexapodLine
-from hexapod_agent.observation import CHANNELS, LETTERS, ObservationError
+from hexapod_agent.observation import ObservationError
 from hexapod_cpg.mapping import READINGS
+from hexapod_sim.sensor_table import CHANNELS, LETTERS
 from hexapod_sim.task import episode_seed
 from hexapod_sim.viewer import ViewerError
 
@@ -30,9 +31,9 @@ def test_tables_of_the_docstring_are_those_of_the_code():
     letters = ('always', *LETTERS)
     told = [(row[0].replace('always', ''), *row[2:]) for row in cells if row[0] in letters]
     table = [
-        (channel.letter, str(size), f'{scale:g}', unit)
+        (channel.letter, str(each.size), f'{each.scale:g}', each.unit)
         for channel in CHANNELS
-        for size, scale, unit in zip(channel.sizes, channel.scales, channel.units, strict=True)
+        for each in channel.quantities
     ]
     assert told[:2] == [('', '18', '1', 'rad'), ('', '18', '6.2', 'rad/s')]
     assert told == table
@@ -125,8 +126,8 @@ def test_sensor_fault_names_channel_step_and_seed(monkeypatch):
     env.reset(seed=7)
     env.step(np.zeros(30, np.float32))
     monkeypatch.setattr(
-        'hexapod_agent.env.read',
-        lambda simulation, keys: (
+        'hexapod_agent.env.observe',
+        lambda simulation, channels: (
             {'linear_velocity': np.full(3, np.nan)}
             | {key: np.zeros(18) for key in ('joint_angles', 'joint_velocities')}
         ),

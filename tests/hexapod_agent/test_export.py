@@ -10,9 +10,9 @@ import onnx
 import onnxruntime
 import pytest
 from hexapod_agent.env import HexapodLine
-from hexapod_agent.observation import CHANNELS, LETTERS, PREVIOUS_ACTION
 from hexapod_agent.policies import trained_policy
-from hexapod_sim.sensors import CHANNEL_READERS, read
+from hexapod_sim.sensor_table import CHANNELS, LETTERS, PREVIOUS_ACTION
+from hexapod_sim.sensors import observe
 
 from hexapod_agent import checkpoint, export
 
@@ -76,8 +76,7 @@ def test_it_drives_the_robot_from_raw_readings(trainer, session):
     observation, _ = env.reset(seed=3)
     action = np.zeros(30, np.float32)
     for _ in range(20):
-        known = [key for key in trainer.spec.readings if key in CHANNEL_READERS]
-        raw = read(env.task.simulation, known) | {
+        raw = observe(env.task.simulation, trainer.spec.channels) | {
             'oscillator': np.concatenate((env.cpg.x, env.cpg.y)),
             'line_offset': np.array([env.task.line_offset]),
             PREVIOUS_ACTION: action.astype(np.float64),
@@ -101,9 +100,9 @@ def test_metadata_is_the_sensor_contract(trainer, session):
     table = {channel.name: channel for channel in CHANNELS}
     for row in rows:
         channel = table[row['channel']]
-        index = channel.readings.index(row['input'])
+        quantity = channel.quantities[channel.readings.index(row['input'])]
         assert row['topics'] == list(channel.topics)
-        assert (row['unit'], row['scale']) == (channel.units[index], channel.scales[index])
+        assert (row['unit'], row['scale']) == (quantity.unit, quantity.scale)
 
 
 def test_file_is_valid_and_small(trainer, session, tmp_path):

@@ -8,8 +8,8 @@ from array import array
 import numpy as np
 import pytest
 from hexapod_agent.messages import decode
-from hexapod_agent.observation import CHANNELS
 from hexapod_sim.robot import JOINTS
+from hexapod_sim.sensor_table import CHANNELS
 from sensor_msgs.msg import JointState
 
 JOINT_STATES = CHANNELS[0]

@@ -5,21 +5,16 @@
 
 import numpy as np
 import pytest
-from hexapod_agent.observation import (
-    CHANNELS,
-    LETTERS,
-    ObservationError,
-    ObservationSpec,
-    parse_observations,
-)
+from hexapod_agent.observation import ObservationError, ObservationSpec, parse_observations
+from hexapod_sim.sensor_table import CHANNELS, LETTERS
 
 
 def readings(value: float = 0.0) -> dict[str, np.ndarray]:
     """Every reading of the table, filled with one value."""
     return {
-        key: np.full(size, value)
+        quantity.name: np.full(quantity.size, value)
         for channel in CHANNELS
-        for key, size in zip(channel.readings, channel.sizes, strict=True)
+        for quantity in channel.quantities
     }
 
 
@@ -51,7 +46,7 @@ def test_channels_keep_the_order_of_the_table():
     values['height'] = np.array([0.14])
     vector = ObservationSpec('E').assemble(values, np.full(30, 0.5))
     np.testing.assert_array_equal(vector[48:78], np.full(30, 0.5, np.float32))
-    scale = {channel.name: channel.scales[0] for channel in CHANNELS}
+    scale = {channel.name: channel.quantities[0].scale for channel in CHANNELS}
     assert vector[78] == pytest.approx(0.25 / scale['line offset'])
     assert vector[79] == pytest.approx((0.14 - 0.13) / scale['body height'])
     assert vector.dtype == np.float32

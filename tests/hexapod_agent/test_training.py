@@ -8,10 +8,11 @@ import pytest
 import torch
 from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.env import HexapodLine
-from hexapod_agent.observation import ACTION_SIZE, ObservationSpec
+from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.replay import Batch
 from hexapod_agent.train import train_episode
 from hexapod_agent.training import Trainer, TrainingDivergedError
+from hexapod_cpg.mapping import ACTION_SIZE
 from hexapod_sim.task import Outcome
 
 

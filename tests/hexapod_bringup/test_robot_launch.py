@@ -10,7 +10,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from hexapod_agent.observation import CHANNELS
+from hexapod_sim.sensor_table import CHANNELS
 from ros2_mini.launch.expand import expand_launch_file
 from ros2_mini.launch.plan import ProcessSpec
 

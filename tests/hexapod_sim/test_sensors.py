@@ -6,7 +6,8 @@
 import mujoco
 import numpy as np
 import pytest
-from hexapod_sim.simulation import Simulation
+from hexapod_sim.sensor_table import CHANNELS, foot_forces
+from hexapod_sim.simulation import Simulation, _locate_blocks
 
 from hexapod_sim import robot, sensors
 
@@ -21,7 +22,6 @@ SIZES = {
     'angular_velocity': (3,),
     'linear_acceleration': (3,),
     'height': (1,),
-    'foot_forces': (12,),
     'foot_contacts': (6,),
     'foot_wrench': (6, 3),
 }
@@ -60,7 +60,7 @@ def place(
 
 def test_channels_have_their_sizes_and_are_copies(standing: Simulation) -> None:
     readings = sensors.read(standing, SIZES)
-    assert set(SIZES) == set(sensors.CHANNEL_READERS)
+    assert set(SIZES) == set(sensors.READINGS)
     for channel, reading in readings.items():
         assert reading.shape == SIZES[channel], channel
         assert reading.dtype == np.float64
@@ -68,14 +68,15 @@ def test_channels_have_their_sizes_and_are_copies(standing: Simulation) -> None:
 
 
 def test_unknown_channel_is_named(standing: Simulation) -> None:
-    with pytest.raises(ValueError, match="sensor channel 'smell': expected one of joint_angles"):
+    with pytest.raises(ValueError, match="sensor reading 'smell': expected one of joint_angles"):
         sensors.read(standing, ['height', 'smell'])
 
 
 def test_every_channel_is_made_of_sensors_of_the_model(standing: Simulation) -> None:
     covered = np.zeros(standing.model.nsensordata, dtype=int)
-    for block in standing.sensor_blocks.values():
-        covered[block] += 1
+    # Forces and contacts are made of the same sensors of the feet.
+    for start, stop in {(block.start, block.stop) for block in standing.sensor_blocks.values()}:
+        covered[start:stop] += 1
     np.testing.assert_array_equal(covered, 1)
 
 
@@ -86,8 +87,8 @@ def test_scattered_sensors_are_refused() -> None:
         + ''.join(f'<jointpos name="{j}_angle" joint="a"/>' for j in robot.JOINTS[1:])
         + '</sensor></mujoco>'
     )
-    with pytest.raises(ValueError, match="block 'joint_angles': expected them in a row"):
-        sensors.locate_blocks(spec.compile())
+    with pytest.raises(ValueError, match="sensors of 'joint_angles': expected them in a row"):
+        _locate_blocks(spec.compile())
 
 
 def test_joint_readings_are_the_joints(standing: Simulation) -> None:
@@ -243,7 +244,7 @@ def test_friction_stays_inside_the_cone(standing: Simulation) -> None:
     rng = np.random.default_rng(8)
     for _ in range(40):
         standing.advance(NEUTRAL + rng.uniform(-0.25, 0.25, 18))
-        forces = read(standing, 'foot_forces')
+        forces = foot_forces(read(standing, 'foot_wrench'))
         normal, friction = forces[:6], forces[6:]
         assert np.all(friction <= robot.FLOOR_FRICTION * normal + 1e-6)
 
@@ -253,15 +254,14 @@ def test_foot_forces_of_hand_made_wrenches() -> None:
     wrench[0] = 3.0, 4.0, 10.0  # friction 5 by Pythagoras
     wrench[4] = -6.0, 8.0, -2.0  # the sign of the normal depends on the device's mounting
     expected = [10, 0, 0, 0, 2, 0, 5, 0, 0, 0, 10, 0]
-    np.testing.assert_array_equal(sensors.foot_forces(wrench), expected)
+    np.testing.assert_array_equal(foot_forces(wrench), expected)
 
 
 def test_foot_forces_are_made_of_the_wrench(standing: Simulation) -> None:
     standing.advance(NEUTRAL + 0.05)
-    readings = sensors.read(standing, ['foot_wrench', 'foot_forces'])
-    np.testing.assert_array_equal(
-        sensors.foot_forces(readings['foot_wrench']), readings['foot_forces']
-    )
+    wrench = read(standing, 'foot_wrench')
+    observed = sensors.observe(standing, CHANNELS)
+    np.testing.assert_array_equal(foot_forces(wrench), observed['foot_forces'])
 
 
 def test_contacts_name_the_feet_on_the_floor(standing: Simulation) -> None:

@@ -7,13 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import reduce
 from typing import Any
 
 import numpy as np
+from hexapod_sim.message_fields import read
 from numpy.typing import NDArray
 
-_AXES = ('x', 'y', 'z', 'w')
 _NANOSECONDS = 1_000_000_000
 
 
@@ -81,12 +80,5 @@ def sample(message: Any, paths: Iterable[str], arrival_ns: int) -> Sample:
         stamp_ns=int(stamp.sec) * _NANOSECONDS + int(stamp.nanosec),
         frame=str(message.header.frame_id),
         names=tuple(getattr(message, 'name', ())),
-        values={path: _numbers(reduce(getattr, path.split('.'), message)) for path in paths},
+        values={path: read(message, path) for path in paths},
     )
-
-
-def _numbers(value: Any) -> NDArray[np.float64]:
-    """Return a scalar, an array, a vector x y z or a quaternion x y z w as one array."""
-    if hasattr(value, 'x'):
-        value = [getattr(value, axis) for axis in _AXES if hasattr(value, axis)]
-    return np.atleast_1d(np.asarray(value, dtype=np.float64))

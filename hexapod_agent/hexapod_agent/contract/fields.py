@@ -5,24 +5,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from hexapod_sim.channel import Channel
 
-from hexapod_agent.observation import Channel
-
-# Fields of each reading and how many numbers they have.
-_FIELDS: dict[str, tuple[tuple[str, int], ...]] = {
-    'joint_angles': (('position', 18),),
-    'joint_velocities': (('velocity', 18),),
-    'joint_torques': (('effort', 18),),
-    'oscillator': (('x', 6), ('y', 6)),
-    'line_offset': (('offset', 1),),
-    'linear_velocity': (('twist.linear', 3),),
-    'orientation': (('orientation', 4),),
-    'angular_velocity': (('angular_velocity', 3),),
-    'height': (('range', 1),),
-    'foot_forces': (('wrench.force', 3),),
-    'foot_contacts': (('contact', 6),),
-}
 ACCELERATION = 'linear_acceleration'
 ACCELERATION_COVARIANCE = 'linear_acceleration_covariance'
 ORIENTATION_COVARIANCE = 'orientation_covariance'
@@ -43,35 +27,9 @@ _FURTHER = {
     ),
     'sensor_msgs/msg/Range': RANGE_LIMITS,
 }
-JOINT_TYPE = 'sensor_msgs/msg/JointState'
-
-
-@dataclass(frozen=True)
-class Field:
-    """One field that is observed, with what the sensor table says of its reading."""
-
-    path: str
-    size: int
-    unit: str
-    scale: float
-    center: float
-    limit: float
-
-
-def observed_fields(channel: Channel) -> tuple[Field, ...]:
-    """Return the fields that a channel reads from each message of its topics."""
-    centers = channel.centers or (0.0,) * len(channel.readings)
-    rows = zip(
-        channel.readings, channel.units, channel.scales, centers, channel.limits, strict=True
-    )
-    return tuple(
-        Field(path, size, unit, scale, center, limit)
-        for reading, unit, scale, center, limit in rows
-        for path, size in _FIELDS[reading]
-    )
 
 
 def checked_paths(channel: Channel) -> tuple[str, ...]:
     """Return the paths of all fields that are taken out of a message to check it."""
-    own = tuple(field.path for field in observed_fields(channel))
+    own = tuple(field.path for field in channel.observed)
     return own + _FURTHER.get(channel.message_type, ())

@@ -16,7 +16,6 @@ from hexapod_agent.contract.fields import (
     ACCELERATION,
     ACCELERATION_COVARIANCE,
     COVARIANCES,
-    observed_fields,
 )
 from hexapod_agent.contract.finding import Finding
 from hexapod_agent.contract.subject import Subject
@@ -52,7 +51,7 @@ def check_gravity(subject: Subject) -> Iterator[Finding]:
 
 def check_given(subject: Subject) -> Iterator[Finding]:
     """Check that nothing that is observed is marked as not measured."""
-    for field in observed_fields(subject.channel):
+    for field in subject.channel.observed:
         covariance = COVARIANCES.get(field.path)
         if covariance is not None and not _given(subject, covariance):
             yield subject.finding(

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from hexapod_node.conditions import until_true
 from hexapod_node.coroutines import sleep
+from hexapod_node.raw_topics import message_class
 from hexapod_node.topic_probe import TopicProbe
 
 from hexapod_agent.contract.check import check_sensors
@@ -18,7 +19,6 @@ from hexapod_agent.contract.evidence import Evidence, Offer, TopicEvidence, samp
 from hexapod_agent.contract.fields import checked_paths
 from hexapod_agent.contract.limits import Limits
 from hexapod_agent.contract.report import SensorReport
-from hexapod_agent.messages import message_class
 from hexapod_agent.observation import ObservationSpec
 
 if TYPE_CHECKING:

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from hexapod_sim.robot import GRAVITY, TOTAL_MASS
 from hexapod_sim.sums import ordered_sum
+from hexapod_sim.units import OTHER_UNITS
 from numpy.typing import NDArray
 
 from hexapod_agent.contract.fields import RANGE_LIMITS
@@ -17,7 +18,6 @@ from hexapod_agent.contract.finding import Finding
 from hexapod_agent.contract.subject import Subject
 from hexapod_agent.contract.timing import stamps_of
 from hexapod_agent.contract.units import (
-    OTHER_UNITS,
     conversion,
     other_unit,
     usual_magnitude,
@@ -87,7 +87,7 @@ def check_motion(subject: Subject) -> Iterator[Finding]:
     """Check joint velocities against the change of the joint angles: unit and sign."""
     if 'joint_velocities' not in subject.channel.readings:
         return
-    if usual_magnitude(subject, 'position') > subject.channel.limits[0]:
+    if usual_magnitude(subject, 'position') > subject.channel.observed[0].limit:
         return  # angles in degrees say nothing about the velocities
     fitted = _slope(subject)
     if fitted is None or _LEAST_SLOPE <= fitted <= _MOST_SLOPE:

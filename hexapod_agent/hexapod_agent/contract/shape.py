@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from hexapod_sim.channel import Field
 from hexapod_sim.joint_names import joint_order
 from hexapod_sim.robot import JOINTS
 
-from hexapod_agent.contract.fields import JOINT_TYPE, Field, observed_fields
 from hexapod_agent.contract.finding import Finding
 from hexapod_agent.contract.subject import Subject
 
@@ -35,10 +35,10 @@ def check_frame(subject: Subject) -> Iterator[Finding]:
 
 def check_shape(subject: Subject) -> Iterator[Finding]:
     """Check joint names and lengths; one finding per field, and none on numbers after these."""
-    joints = subject.channel.message_type == JOINT_TYPE
+    joints = subject.channel.has_joints
     if joints:
         yield from _check_names(subject)
-    for field in observed_fields(subject.channel):
+    for field in subject.channel.observed:
         for sample in subject.samples:
             size = len(sample.names) if joints else field.size
             if sample.values[field.path].size != size:
@@ -48,7 +48,7 @@ def check_shape(subject: Subject) -> Iterator[Finding]:
 
 def check_finite(subject: Subject) -> Iterator[Finding]:
     """Check that every number is finite."""
-    for field in observed_fields(subject.channel):
+    for field in subject.channel.observed:
         broken = ~np.isfinite(subject.stack(field.path))
         if not broken.any():
             continue
@@ -68,7 +68,7 @@ def check_finite(subject: Subject) -> Iterator[Finding]:
 
 def number_name(subject: Subject, path: str, index: int) -> str:
     """Return the name of one number of a field, such as 'position[lf_hip]'."""
-    if subject.channel.message_type == JOINT_TYPE:
+    if subject.channel.has_joints:
         return f'{path}[{JOINTS[index]}]'
     return f'{path}[{index}]'
 
@@ -90,7 +90,7 @@ def _check_names(subject: Subject) -> Iterator[Finding]:
 
 def _wrong_length(subject: Subject, field: Field, found: int, wanted: int) -> Finding:
     cure = f'let the driver fill all {wanted} numbers'
-    if subject.channel.message_type == JOINT_TYPE:
+    if subject.channel.has_joints:
         cure = 'let the driver fill the field for every name'
         if not found:
             cure += f'; {_missing_cure(subject, field)}'
@@ -105,7 +105,7 @@ def _wrong_length(subject: Subject, field: Field, found: int, wanted: int) -> Fi
 
 def _missing_cure(subject: Subject, field: Field) -> str:
     """Return what to do about a field that nothing measures."""
-    if subject.channel.message_type == JOINT_TYPE:
+    if subject.channel.has_joints:
         return (
             f"let the hardware export the state interface '{field.path}' of every joint: "
             'joint_state_broadcaster fills in NaN, or nothing, where there is none; or start the '

@@ -8,14 +8,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from hexapod_sim.channel import Channel
 from hexapod_sim.joint_names import joint_order
 from numpy.typing import NDArray
 
 from hexapod_agent.contract.evidence import Evidence, Sample, TopicEvidence
-from hexapod_agent.contract.fields import JOINT_TYPE
 from hexapod_agent.contract.finding import Finding, Level
 from hexapod_agent.contract.limits import Limits
-from hexapod_agent.observation import Channel
 
 
 @dataclass(frozen=True)
@@ -46,7 +45,7 @@ class Subject:
         Raises:
             ValueError: samples differ in length, or a joint is missing.
         """
-        if self.channel.message_type != JOINT_TYPE:
+        if not self.channel.has_joints:
             return np.stack([sample.values[path] for sample in self.samples])
         rows = []
         for sample in self.samples:

@@ -5,27 +5,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 import numpy as np
-from hexapod_sim.robot import GRAVITY
+from hexapod_sim.channel import Field
+from hexapod_sim.units import OTHER_UNITS
 
-from hexapod_agent.contract.fields import Field, observed_fields
 from hexapod_agent.contract.finding import Finding
 from hexapod_agent.contract.subject import Subject
 
-# What drivers publish instead, by our unit: name, and how many of it make one of ours.
-OTHER_UNITS: dict[str, tuple[tuple[str, float], ...]] = {
-    'rad': (('degrees', 180.0 / math.pi),),
-    'rad/s': (('degrees/s', 180.0 / math.pi), ('rpm', 30.0 / math.pi)),
-    'N·m': (('kgf·cm', 100.0 / GRAVITY), ('N·cm', 100.0), ('N·mm', 1000.0)),
-    'm/s': (('cm/s', 100.0), ('mm/s', 1000.0)),
-    'm': (('cm', 100.0), ('mm', 1000.0)),
-    'm/s²': (('g', 1.0 / GRAVITY), ('cm/s²', 100.0), ('mg', 1000.0 / GRAVITY)),
-    'N': (('kgf', 1.0 / GRAVITY), ('gf', 1000.0 / GRAVITY), ('mN', 1000.0)),
-    '1': (('percent', 100.0),),
-}
 # A few wild numbers do not make another unit.
 _USUAL_PERCENTILE = 95
 # Below this share of the scale nothing tells one unit from another.
@@ -34,7 +22,7 @@ _AT_REST = 0.01
 
 def check_units(subject: Subject) -> Iterator[Finding]:
     """Check each observed field's magnitudes."""
-    for field in observed_fields(subject.channel):
+    for field in subject.channel.observed:
         usual = usual_magnitude(subject, field.path)
         if usual > field.limit:
             yield _wrong_unit(subject, field, usual)

@@ -15,6 +15,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from hexapod_sim.channel import Channel
 from hexapod_sim.joint_names import joint_order
 from hexapod_sim.robot import CONTROL_PERIOD_NS, GRAVITY
 
@@ -24,14 +25,11 @@ from hexapod_agent.contract.fields import (
     ACCELERATION,
     ACCELERATION_COVARIANCE,
     COVARIANCES,
-    JOINT_TYPE,
     checked_paths,
-    observed_fields,
 )
 from hexapod_agent.contract.finding import Finding
 from hexapod_agent.contract.limits import Limits
 from hexapod_agent.contract.subject import Subject
-from hexapod_agent.observation import Channel
 
 # A driver in another unit now and then sends numbers that would do in ours, and an accelerometer
 # of a walking robot points anywhere: a fault of these kinds lasts until a second went well, and
@@ -69,7 +67,7 @@ class MessageWatch:
         self._channel, self._topic = channel, topic
         self._limits = limits or Limits()
         self._paths = checked_paths(channel)
-        self._fields = observed_fields(channel)
+        self._fields = channel.observed
         paths = [COVARIANCES.get(field.path) for field in self._fields]
         self._covariances = [path for path in paths if path is not None]
         frames = dict(zip(channel.topics, channel.frames, strict=False))
@@ -97,7 +95,7 @@ class MessageWatch:
         """Whether frame, names, lengths and magnitudes are those of the table."""
         if self._frame is not None and taken.frame != self._frame:
             return False
-        joints = self._channel.message_type == JOINT_TYPE
+        joints = self._channel.has_joints
         if joints:
             try:
                 order = joint_order(taken.names)

@@ -5,13 +5,13 @@
 
 import numpy as np
 from hexapod_cpg.cpg import Cpg
-from hexapod_cpg.mapping import command_from_action
+from hexapod_cpg.mapping import ACTION_SIZE, command_from_action
 from hexapod_cpg.oscillator import start_state
 from hexapod_sim.task import LineTask, Outcome
 
 from hexapod_agent.config import AgentConfig
 from hexapod_agent.env import Observation, read_observation
-from hexapod_agent.observation import ACTION_SIZE, ObservationSpec
+from hexapod_agent.observation import ObservationSpec
 
 
 class Robots:

@@ -12,13 +12,13 @@ from functools import partial
 
 import numpy as np
 import torch
+from hexapod_cpg.mapping import ACTION_SIZE
 from numpy.typing import NDArray
 
 from hexapod_agent.config import AgentConfig
 from hexapod_agent.ddpg import Ddpg, UpdateStatistics
 from hexapod_agent.fleet.crew import Crew, Job
 from hexapod_agent.fleet.seat import Seat
-from hexapod_agent.observation import ACTION_SIZE
 from hexapod_agent.replay import Batch
 
 

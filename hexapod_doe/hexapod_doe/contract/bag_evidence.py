@@ -11,7 +11,8 @@ from pathlib import Path
 
 from hexapod_agent.contract.evidence import Evidence, Offer, Sample, TopicEvidence, sample
 from hexapod_agent.contract.fields import checked_paths
-from hexapod_agent.observation import Channel, ObservationSpec
+from hexapod_agent.observation import ObservationSpec
+from hexapod_sim.channel import Channel
 
 from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.contract.check_options import NAMESPACE

@@ -11,8 +11,9 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from hexapod_agent.contract.limits import Limits, parse_frames
-from hexapod_agent.observation import CHANNELS, ObservationSpec
+from hexapod_agent.observation import ObservationSpec
 from hexapod_sim.command_line import CommandLine, number, path
+from hexapod_sim.sensor_table import CHANNELS
 
 DESCRIPTION = (
     'Hold the sensors of a live graph, or of a bag, against what the agent was trained with; '

@@ -16,9 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 from hexapod_agent.config import CpgConfig
 from hexapod_agent.messages import decode
-from hexapod_agent.observation import ACTION_SIZE, ObservationSpec
+from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.policies import Policy
 from hexapod_cpg.mapping import (
+    ACTION_SIZE,
     COMMAND_FIELDS,
     Command,
     action_from_command,

@@ -31,11 +31,12 @@ import yaml
 from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.evaluation import Evaluation, run_episode, summarize
-from hexapod_agent.observation import ACTION_SIZE, ObservationSpec, parse_observations
+from hexapod_agent.observation import ObservationSpec, parse_observations
 from hexapod_agent.policies import Policy, constant_policy, trained_policy
 from hexapod_agent.provenance import provenance
 from hexapod_agent.train import train_episode
 from hexapod_agent.training import Trainer
+from hexapod_cpg.mapping import ACTION_SIZE
 from hexapod_sim.command_line import CommandLine, file, folder, whole
 from pydantic import PositiveInt, TypeAdapter, ValidationError
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import pandas as pd
-from hexapod_agent.observation import CHANNELS, LETTERS
+from hexapod_sim.sensor_table import CHANNELS, LETTERS
 
 from hexapod_doe.bags.run_identity import CONFIG, differences, making, odd_runs, settings
 from hexapod_doe.bags.run_record import RunRecord, find_bags, is_complete, read_run

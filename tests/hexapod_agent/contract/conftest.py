@@ -15,8 +15,9 @@ from hexapod_agent.contract.evidence import Evidence, Offer, Sample, TopicEviden
 from hexapod_agent.contract.finding import Finding
 from hexapod_agent.contract.limits import Limits
 from hexapod_agent.contract.report import SensorReport
-from hexapod_agent.observation import CHANNELS, LETTERS, ObservationSpec
+from hexapod_agent.observation import ObservationSpec
 from hexapod_sim.robot import CONTROL_PERIOD_NS, GRAVITY, JOINTS, NEUTRAL_POSE, TOTAL_MASS
+from hexapod_sim.sensor_table import CHANNELS, LETTERS
 
 SAMPLES = 80
 START_NS = 5_000_000_000
@@ -63,7 +64,7 @@ def healthy() -> Evidence:
     for channel in CHANNELS:
         for index, topic in enumerate(channel.topics):
             frame = channel.frames[index] if channel.frames else ''
-            joints = channel.message_type == 'sensor_msgs/msg/JointState'
+            joints = channel.has_joints
             samples = tuple(
                 Sample(
                     arrival_ns=START_NS + step * CONTROL_PERIOD_NS + 2_000_000,

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from hexapod_agent.contract.evidence import Offer, Sample
 from hexapod_agent.contract.limits import Limits
-from hexapod_agent.observation import LETTERS
 from hexapod_sim.robot import JOINTS
+from hexapod_sim.sensor_table import LETTERS
 
 
 def test_a_healthy_robot_passes_without_a_word(robot) -> None:

@@ -9,9 +9,9 @@ import math
 
 import numpy as np
 import pytest
-from hexapod_agent.contract.units import OTHER_UNITS
-from hexapod_agent.observation import CHANNELS
 from hexapod_sim.robot import LEGS
+from hexapod_sim.sensor_table import CHANNELS
+from hexapod_sim.units import OTHER_UNITS
 
 DEGREES = 180.0 / math.pi
 
@@ -90,5 +90,5 @@ def test_a_standing_robot_passes_and_says_what_cannot_be_seen(robot) -> None:
 
 
 def test_every_unit_of_the_table_has_others_to_be_taken_for() -> None:
-    observed = {unit for channel in CHANNELS if channel.topics for unit in channel.units}
+    observed = {q.unit for channel in CHANNELS if channel.topics for q in channel.quantities}
     assert observed <= set(OTHER_UNITS)

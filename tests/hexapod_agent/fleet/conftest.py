@@ -15,10 +15,11 @@ from hexapod_agent.fleet.learners import Learners, SeparateLearners
 from hexapod_agent.fleet.robots import Robots
 from hexapod_agent.fleet.seat import Run
 from hexapod_agent.fleet.stacked import StackedLearners
-from hexapod_agent.observation import LETTERS, ObservationSpec
+from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.summary import EpisodeSummary
 from hexapod_agent.train import train_episode
 from hexapod_agent.training import Trainer
+from hexapod_sim.sensor_table import LETTERS
 
 
 class NotedRun(Run):

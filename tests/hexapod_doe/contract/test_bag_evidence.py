@@ -9,8 +9,8 @@ import json
 from pathlib import Path
 
 import pytest
-from hexapod_agent.observation import LETTERS
 from hexapod_doe.check_sensors_node import main
+from hexapod_sim.sensor_table import LETTERS
 
 CASES = Path(__file__).resolve().parents[2] / 'data/cases'
 TWO = str(CASES / 'b05_two_robots')

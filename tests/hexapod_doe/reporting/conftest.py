@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from hexapod_agent.observation import CHANNELS
 from hexapod_doe.analysis.analysis import analyse
 from hexapod_doe.analysis.options import Options
 from hexapod_doe.analysis.results import Analysis
@@ -16,6 +15,7 @@ from hexapod_doe.designs.design import fraction
 from hexapod_doe.designs.plan_table import make_plan
 from hexapod_doe.reporting.report import write_report
 from hexapod_doe.tables.table import RunTable, build_rows
+from hexapod_sim.sensor_table import CHANNELS
 
 NAMES = {channel.letter: channel.name for channel in CHANNELS if channel.letter}
 EFFECTS = np.array([10, 25, 60, 20, 30, -8, -12])

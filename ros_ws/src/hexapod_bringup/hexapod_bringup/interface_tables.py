@@ -17,7 +17,7 @@ from typing import Any
 
 from hexapod_agent.agent_node import AgentNode
 from hexapod_agent.config import AgentConfig
-from hexapod_agent.observation import CHANNELS, LETTERS, ObservationSpec
+from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.play_node import PlayNode
 from hexapod_agent.training import Trainer
 from hexapod_cpg.cpg_node import CpgNode
@@ -33,6 +33,7 @@ from hexapod_node.session import begin
 from hexapod_node.sync import LOCKSTEP, REALTIME
 from hexapod_sim.command_line import CommandLine, file
 from hexapod_sim.fake_driver_node import FakeDriverNode
+from hexapod_sim.sensor_table import CHANNELS, LETTERS
 from hexapod_sim.sim_node import SimNode
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.action import get_action_server_names_and_types_by_node
@@ -84,8 +85,8 @@ def sensor_table() -> str:
             str(channel.size),
             ', '.join(f'`{topic}`' for topic in channel.topics) or 'none',
             f'`{channel.message_type}`' if channel.message_type else 'none',
-            channel.unit,
-            channel.scale,
+            ', '.join(quantity.unit for quantity in channel.quantities),
+            ', '.join(f'{quantity.scale:g}' for quantity in channel.quantities),
             channel.device,
         )
         for channel in CHANNELS

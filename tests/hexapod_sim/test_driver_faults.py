@@ -8,8 +8,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from hexapod_interfaces.msg import LineOffset
-from hexapod_sim.driver_channels import CHANNELS, JointLayout, read, write
-from hexapod_sim.driver_faults import ALL_FAULTS, fault_names, faults
+from hexapod_sim.driver_faults import ALL_FAULTS, DEVICES, fault_names, faults
+from hexapod_sim.joint_layout import JointLayout
+from hexapod_sim.message_fields import read, write
 from hexapod_sim.messages import SENSOR_TOPICS
 from hexapod_sim.robot import JOINTS, NEUTRAL_POSE, SUBSTEPS
 from hexapod_sim.simulation import Simulation
@@ -18,8 +19,8 @@ from rclpy.serialization import deserialize_message, serialize_message
 from hexapod_sim import sensors
 
 SENSORS = {sensor.name: sensor for sensor in SENSOR_TOPICS}
-TOPICS = [(channel, topic) for channel in CHANNELS for topic in CHANNELS[channel].topics]
-FAULTS = [(channel, fault) for channel in CHANNELS for fault in faults(channel)]
+TOPICS = [(device, topic) for device in DEVICES for topic in DEVICES[device].topics]
+FAULTS = [(device, fault) for device in DEVICES for fault in faults(DEVICES[device])]
 
 
 @pytest.fixture(scope='module')
@@ -46,13 +47,13 @@ def test_every_sensor_topic_of_the_sim_has_a_driver() -> None:
 @pytest.mark.parametrize(('channel', 'topic'), TOPICS)
 def test_what_is_written_is_read_and_fits_the_message(channel, topic, simulation) -> None:
     made = message(topic, simulation)
-    for reading in CHANNELS[channel].readings:
-        values = np.full_like(read(made, reading.path), 0.25)
-        if reading.kind == 'switch':
+    for field in DEVICES[channel].fields:
+        values = np.full_like(read(made, field.path), 0.25)
+        if field.kind == 'switch':
             values = np.round(values)
-        write(made, reading.path, values)
+        write(made, field.path, values)
         copy = deserialize_message(serialize_message(made), type(made))
-        np.testing.assert_array_equal(read(copy, reading.path), values)
+        np.testing.assert_array_equal(read(copy, field.path), values)
 
 
 def test_a_shuffled_layout_moves_names_and_numbers_together(simulation) -> None:
@@ -70,16 +71,16 @@ def test_a_shuffled_layout_moves_names_and_numbers_together(simulation) -> None:
 
 @pytest.mark.parametrize(('channel', 'fault'), FAULTS)
 def test_a_fault_changes_the_message_and_can_still_be_sent(channel, fault, simulation) -> None:
-    for topic in CHANNELS[channel].topics:
+    for topic in DEVICES[channel].topics:
         sound, broken = (message(topic, simulation) for _ in range(2))
-        faults(channel)[fault](broken)
+        faults(DEVICES[channel])[fault](broken)
         assert serialize_message(broken) != serialize_message(sound)
 
 
 def test_faults_are_listed_by_channel() -> None:
-    assert fault_names('foot_contacts') == ('stopped', 'stale_stamps')
-    assert 'flipped_gravity' in fault_names('imu/data_raw')
-    assert 'wrong_length' in fault_names('joint_torques')
+    assert fault_names(DEVICES['foot_contacts']) == ('stopped', 'stale_stamps')
+    assert 'flipped_gravity' in fault_names(DEVICES['imu/data_raw'])
+    assert 'wrong_length' in fault_names(DEVICES['joint_torques'])
     assert set(ALL_FAULTS) == {
         'stopped', 'stale_stamps', 'nan', 'wrong_length', 'wrong_names', 'wrong_frame',
         'bad_quaternion', 'flipped_gravity', 'wrong_unit',
