@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -34,6 +33,7 @@ from hexapod_doe.campaigns.local_workers import LocalWorkers
 from hexapod_doe.campaigns.messages import train_goal
 from hexapod_doe.campaigns.page_writer import PageWriter
 from hexapod_doe.campaigns.peers import Ended, WorkerBusyError, WorkerLostError, WorkerPeer
+from hexapod_doe.cores import usable_cores
 from hexapod_doe.errors import CampaignError
 
 _ACTION = 'hexapod_interfaces/action/TrainRun'
@@ -239,7 +239,7 @@ class ManagerNode(Node):
 
     def _worker_count(self) -> int:
         count = int(self._parameter('local_workers'))
-        return count if count >= 0 else os.cpu_count() or 1
+        return count if count >= 0 else usable_cores()
 
     def _parameter(self, name: str) -> Any:
         return self.get_parameter(name).value

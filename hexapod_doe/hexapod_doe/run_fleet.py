@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import argparse
 import math
-import os
 import signal
 import sys
 from collections.abc import Iterator, Sequence
@@ -30,8 +29,9 @@ from hexapod_doe.campaigns.campaign_lock import campaign_lock
 from hexapod_doe.campaigns.fleet_campaign import FleetCampaign
 from hexapod_doe.campaigns.fleet_processes import train_in_processes
 from hexapod_doe.campaigns.plan_copy import place_plan
+from hexapod_doe.cores import usable_cores
 
-_CORES = os.cpu_count() or 1
+_CORES = usable_cores()
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
