@@ -4,8 +4,10 @@
 """Command line: analyse a campaign's bags, or any table, and write report and analysis.json."""
 
 import argparse
+import shlex
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 
 from hexapod_sim.command_line import options_of
 
@@ -14,11 +16,13 @@ from hexapod_doe.analysis.analysis_json import write_json
 from hexapod_doe.analysis.analyze_arguments import build_parser
 from hexapod_doe.analysis.options import Options
 from hexapod_doe.analysis.results import Analysis
+from hexapod_doe.campaigns.campaign import PLAN_FILE
+from hexapod_doe.campaigns.next_steps import after_analysis
 from hexapod_doe.designs.plan_file import PlanError
 from hexapod_doe.errors import AnalysisError, BagError, TableError
 from hexapod_doe.reporting.report import write_report
 from hexapod_doe.tables.bag_response import DEFAULT_RESPONSE
-from hexapod_doe.tables.bag_table import bag_responses, plan_rule, read_bags
+from hexapod_doe.tables.bag_table import bag_responses, confirmation_runs, plan_rule, read_bags
 from hexapod_doe.tables.csv_table import read_csv, read_responses
 from hexapod_doe.tables.table import RunTable
 
@@ -33,7 +37,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.error('--table needs --response NAME, the column to analyse')
     try:
         options = Options(**options_of(Options, args), confirmation=plan_rule(args.bags))
-        analysis = analyse(_tables(args), options, _confirmation_runs(args))
+        tables = _tables(args)
+        analysis = analyse(tables, options, _confirmation_runs(args, tables))
+        analysis = replace(analysis, next_steps=_next_steps(args, analysis, arguments))
         args.out.mkdir(parents=True, exist_ok=True)
         write_json(analysis, args.out / 'analysis.json')
         page = write_report(analysis, args.out)
@@ -42,6 +48,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
     print(summary(analysis))
     print(f'report: {page}')
+    if analysis.next_steps:
+        print('\n'.join(['next:', *(f'  {line}' for line in analysis.next_steps)]))
     return 0
 
 
@@ -75,13 +83,18 @@ def _tables(args: argparse.Namespace) -> list[RunTable]:
     ]
 
 
-def _confirmation_runs(args: argparse.Namespace) -> dict[str, list[float]]:
-    """Return the responses of the confirmation runs by label."""
+def _confirmation_runs(
+    args: argparse.Namespace, tables: Sequence[RunTable]
+) -> dict[str, list[float]]:
+    """Return the responses of the confirmation runs by label, those below a campaign too."""
     response = args.response or DEFAULT_RESPONSE
+    like = tables[0].settings
+    if not args.confirm:
+        return confirmation_runs(args.bags, response, like) if args.bags else {}
     runs: dict[str, list[float]] = {}
     for path in args.confirm:
         found = (
-            bag_responses(path, response)
+            bag_responses(path, response, like)
             if path.is_dir()
             else read_responses(path, response, args.factors)
         )
@@ -90,6 +103,20 @@ def _confirmation_runs(args: argparse.Namespace) -> dict[str, list[float]]:
         for label, values in found.items():
             runs.setdefault(label, []).extend(values)
     return runs
+
+
+def _next_steps(
+    args: argparse.Namespace, analysis: Analysis, arguments: Sequence[str] | None
+) -> tuple[str, ...]:
+    """Return what to type next, for a campaign whose model states intervals."""
+    found = analysis.confirmation
+    if found is None or args.confirm or any(check.observed for check in found.checks):
+        return ()
+    again = shlex.join(['ros2', 'run', 'hexapod_doe', 'analyze', *(arguments or sys.argv[1:])])
+    sets = [check.label for check in found.checks]
+    campaigns = [path for path in args.bags if (path / PLAN_FILE).is_file()]
+    first = next((path for path in campaigns if path.resolve().name == analysis.title), None)
+    return tuple(after_analysis(first, sets, again)) if first else ()
 
 
 if __name__ == '__main__':

@@ -13,6 +13,7 @@ from rich.console import Console
 
 from hexapod_doe.campaigns.campaign import PLAN_FILE
 from hexapod_doe.campaigns.folder import read_progress
+from hexapod_doe.campaigns.next_steps import after_status
 from hexapod_doe.campaigns.overview import overview
 from hexapod_doe.campaigns.page import write_page
 from hexapod_doe.campaigns.progress import State
@@ -41,6 +42,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if not console.is_terminal:
             console.width = max(console.width, _LEAST_WIDTH)
         console.print(overview(progress, progress.runs.values()))
+        if lines := after_status(args.directory, progress):
+            print('\n'.join(['', 'next:', *(f'  {line}' for line in lines)]))
     return 0 if len(progress.having(State.DONE)) == len(progress.runs) else 1
 
 

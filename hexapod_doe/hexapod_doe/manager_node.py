@@ -33,6 +33,7 @@ from hexapod_doe.campaigns.local_workers import LocalWorkers
 from hexapod_doe.campaigns.messages import train_goal
 from hexapod_doe.campaigns.page_writer import PageWriter
 from hexapod_doe.campaigns.peers import Ended, WorkerBusyError, WorkerLostError, WorkerPeer
+from hexapod_doe.campaigns.plan_copy import keep_config
 from hexapod_doe.cores import usable_cores
 from hexapod_doe.errors import CampaignError
 
@@ -94,6 +95,7 @@ class ManagerNode(Node):
             plan, self._parameter('attempts'), self._settings.expected()
         )
         self._campaign.check_own()
+        keep_config(self._campaign.directory, self._settings.config)
         self._failures = FailureLog(self._campaign.directory)
         self._failures.clear()
         self._workers: dict[str, WorkerPeer] = {}

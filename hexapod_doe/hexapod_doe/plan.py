@@ -10,6 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
+from hexapod_doe.campaigns.campaign import PLAN_FILE
+from hexapod_doe.campaigns.next_steps import CONFIRM_FOLDER, after_confirm
 from hexapod_doe.campaigns.plan_guard import check_free
 from hexapod_doe.designs.aliases import (
     alias_sets,
@@ -21,6 +23,7 @@ from hexapod_doe.designs.aliases import (
 )
 from hexapod_doe.designs.augment import aimed_model, d_optimal, foldover, semifold, variance_ratios
 from hexapod_doe.designs.blocks import confounded_with_blocks
+from hexapod_doe.designs.confirm_plan import confirmation_plan
 from hexapod_doe.designs.design import Design, fraction, from_generators
 from hexapod_doe.designs.plan_arguments import parse
 from hexapod_doe.designs.plan_file import read_plan, write_plan
@@ -86,6 +89,20 @@ def _augment(args: argparse.Namespace) -> None:
     for term, ratio in ratios.items():
         if ratio > 1 + 1e-6:
             print(f'{term}: variance {ratio:.2f} times that of a term clear in the first plan')
+
+
+def _confirm(args: argparse.Namespace) -> None:
+    path = args.campaign / PLAN_FILE if args.campaign.is_dir() else args.campaign
+    plan, folder = read_plan(path), path.parent
+    sets = args.sets.split(',') if args.sets else leading_sets(folder)
+    further = confirmation_plan(plan, sets, args.replicates)
+    out = args.out or folder / CONFIRM_FOLDER / PLAN_FILE
+    check_free(further, out)
+    write_plan(further, out)
+    assert further.settings is not None  # made here, not read
+    print(f'{len(further.rows)} runs: {", ".join(further.settings.confirms)} -> {out}')
+    print(further.settings.confirmation.rule)
+    print('\n'.join(['Next:', *(f'  {line}' for line in after_confirm(folder, out))]))
 
 
 def _extend(plan: Plan, added: np.ndarray, how: str, args: argparse.Namespace) -> None:
@@ -157,6 +174,26 @@ def _hours(args: argparse.Namespace) -> None:
             print(describe(option, args.episodes, args.sigma))
 
 
+def leading_sets(campaign: Path) -> list[str]:
+    """Return the sets that the analysis of a campaign states intervals for: its best.
+
+    Raises:
+        ValueError: The campaign cannot be analysed, or leaves no error to state an interval with.
+    """
+    # What `plan` needs otherwise imports none of this.
+    from hexapod_doe.analysis.analysis import analyse
+    from hexapod_doe.analysis.options import Options
+    from hexapod_doe.tables.bag_table import plan_rule, read_bags
+
+    tables = read_bags([campaign], read_plan(campaign / PLAN_FILE).factors)
+    found = analyse(tables[:1], Options(confirmation=plan_rule([campaign])))
+    if found.confirmation is None:
+        raise ValueError(
+            f'{campaign}: its runs leave no error to state intervals with; name --sets'
+        )
+    return [check.label for check in found.confirmation.checks]
+
+
 def _design(args: argparse.Namespace) -> Design:
     factors = int(args.factors) if args.factors.isdigit() else args.factors
     if args.generators:
@@ -181,6 +218,7 @@ _RUN: dict[str, Callable[[argparse.Namespace], None]] = {
     'make': _make,
     'fold': _fold,
     'augment': _augment,
+    'confirm': _confirm,
     'aliases': _aliases,
     'power': _power,
     'hours': _hours,

@@ -21,7 +21,7 @@ from hexapod_doe.campaigns.campaign import Row, RunSettings, read_rows
 from hexapod_doe.campaigns.campaign_lock import campaign_lock, row_lock
 from hexapod_doe.campaigns.folder import read_progress
 from hexapod_doe.campaigns.page import write_page
-from hexapod_doe.campaigns.plan_copy import place_plan
+from hexapod_doe.campaigns.plan_copy import keep_config, place_plan
 from hexapod_doe.designs.plan_file import PlanError
 
 
@@ -48,6 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
     try:
         with campaign_lock(plan.resolve().parent, shared=True), row_lock(row.bag):
+            keep_config(plan.resolve().parent, args.hyperparameters)
             return _train(row, settings, args.stall)
     except (ValueError, OSError) as error:
         print(f'run_case: {error}', file=sys.stderr)

@@ -28,7 +28,7 @@ from hexapod_doe.campaigns.campaign import Campaign, shared_settings
 from hexapod_doe.campaigns.campaign_lock import campaign_lock
 from hexapod_doe.campaigns.fleet_campaign import FleetCampaign
 from hexapod_doe.campaigns.fleet_processes import train_in_processes
-from hexapod_doe.campaigns.plan_copy import place_plan
+from hexapod_doe.campaigns.plan_copy import keep_config, place_plan
 from hexapod_doe.cores import usable_cores
 
 _CORES = usable_cores()
@@ -89,6 +89,7 @@ def _run(args: argparse.Namespace) -> int:
         campaign = Campaign.open(plan, attempts=1, shared=shared)
         campaign.check_own()
         campaign.check_writable()
+        keep_config(directory, args.hyperparameters)
         due = [row.observations for row in campaign.rows if row.run_id not in campaign.done]
         processes = args.processes or (_CORES if is_cpu(args.device) else 1)
         if processes > 1 and due:

@@ -14,6 +14,7 @@ from hexapod_doe.analysis.findings import (
     Averaging,
     Confirmation,
     EstimandResult,
+    Estimate,
     Purchase,
     RankUncertainty,
     TwoPart,
@@ -189,6 +190,10 @@ class Analysis:
     averaging: Averaging | None = None
     confirmation: Confirmation | None = None
     purchase: Purchase | None = None
+    against_all: Estimate | None = None
+    """How much the choice earns more than all sensors; None where the model leaves no error."""
+    next_steps: tuple[str, ...] = ()
+    """Lines to type next."""
     compared: tuple['Analysis', ...] = ()
     """Other designs over the same factors, analysed with the same options."""
 

@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Puts a plan into the folder of its campaign, so that the folder tells everything by itself."""
+"""Puts plan and configuration into a campaign's folder, so that it tells everything by itself."""
 
 from __future__ import annotations
 
@@ -11,6 +11,9 @@ from pathlib import Path
 
 from hexapod_doe.campaigns.campaign import PLAN_FILE
 from hexapod_doe.designs.plan_file import PlanError
+
+CONFIG_FILE = 'config.yaml'
+"""Where a campaign's folder has the hyper-parameter file of its runs."""
 
 
 def place_plan(plan: Path, out: Path | None) -> Path:
@@ -37,6 +40,17 @@ def place_plan(plan: Path, out: Path | None) -> Path:
     if there.read_bytes() != plan.read_bytes():
         raise PlanError(f'{there}: another plan than {plan}, expected the same or none')
     return there
+
+
+def keep_config(directory: Path, config: str | Path | None) -> None:
+    """Copy the hyper-parameter file of a campaign's runs into its folder, if there is one here.
+
+    Raises:
+        OSError: the folder cannot be written.
+    """
+    kept = directory / CONFIG_FILE
+    if config and Path(config).is_file() and not (kept.exists() and kept.samefile(config)):
+        _copy(Path(config), kept)
 
 
 def _copy(source: Path, target: Path) -> None:

@@ -7,11 +7,18 @@ from typing import TypedDict
 
 import numpy as np
 
-from hexapod_doe.analysis.findings import Attribution, Averaging, Purchase, RankUncertainty
+from hexapod_doe.analysis.findings import (
+    Attribution,
+    Averaging,
+    Estimate,
+    Purchase,
+    RankUncertainty,
+)
 from hexapod_doe.analysis.options import Options
 from hexapod_doe.choosing.attribution import attribute
 from hexapod_doe.choosing.averaging import average
 from hexapod_doe.choosing.devices import read_devices
+from hexapod_doe.choosing.draws import interval_of
 from hexapod_doe.choosing.outlook import Outlook
 from hexapod_doe.choosing.purchase import purchase
 from hexapod_doe.choosing.ranks import rank_uncertainty
@@ -25,6 +32,7 @@ class Conclusions(TypedDict):
     attribution: Attribution
     averaging: Averaging
     purchase: Purchase | None
+    against_all: Estimate | None
 
 
 def conclude(
@@ -45,7 +53,19 @@ def conclude(
             outlook.levels, outlook.response, outlook.spread, options.level, rng, outlook.blocks
         ),
         purchase=_purchase(table, outlook, options),
+        against_all=_against_all(outlook, options.level),
     )
+
+
+def _against_all(outlook: Outlook, level: float) -> Estimate | None:
+    """Compare the first of the ranking with the set of all sensors, by the model that states."""
+    stated = outlook.stated
+    if stated is None:
+        return None
+    first, every = outlook.labels.index(outlook.ranking[0]), len(outlook.labels) - 1
+    low, high = interval_of(stated.draws[:, first] - stated.draws[:, every], level)
+    difference = float(stated.fits[first] - stated.fits[every])
+    return Estimate(difference, (float(low), float(high)))
 
 
 def _purchase(table: RunTable, outlook: Outlook, options: Options) -> Purchase | None:

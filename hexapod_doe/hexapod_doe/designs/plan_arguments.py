@@ -18,6 +18,7 @@ COMMANDS = {
     'make': 'make a plan (the default)',
     'fold': 'add the foldover or a semifold of a plan that has been run',
     'augment': 'add the cases that separate confounded terms best',
+    'confirm': 'plan new runs of the sets that a campaign chose, by the rule of its plan',
     'aliases': 'print the words of a design and what it confounds, to an order',
     'power': 'say what a design is able to see',
     'hours': 'propose a design for a budget of machine time',
@@ -41,6 +42,7 @@ def _parser() -> CommandLine:
     _add_make(made['make'])
     _add_fold(made['fold'])
     _add_augment(made['augment'])
+    _add_confirm(made['confirm'])
     _add_aliases(made['aliases'])
     _add_power(made['power'])
     _add_hours(made['hours'])
@@ -86,6 +88,21 @@ def _add_augment(parser: argparse.ArgumentParser) -> None:
         help='aliases to tell apart, such as CE,FG; every two-factor interaction by default',
     )
     _add_output(parser, replicates=None)
+
+
+def _add_confirm(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('campaign', type=Path, help="the campaign's folder, or its plan.csv")
+    parser.add_argument(
+        '--sets',
+        metavar='CD,CE',
+        help='sets to confirm, none for no sensor; by default those that `analyze` puts first',
+    )
+    parser.add_argument(
+        '--replicates', type=int, metavar='N', help="runs of each set (default by the plan's rule)"
+    )
+    parser.add_argument(
+        '--out', type=Path, metavar='FILE', help='file to write (CAMPAIGN/confirm/plan.csv)'
+    )
 
 
 def _add_aliases(parser: argparse.ArgumentParser) -> None:

@@ -8,6 +8,7 @@ Every sentence is derived from the numbers of the analysis.
 
 from dataclasses import dataclass
 
+from hexapod_doe.analysis.findings import Purchase
 from hexapod_doe.analysis.results import Analysis
 from hexapod_doe.designs.planner import FULL_TRAINING
 from hexapod_doe.fitting.alias_matrix import short_alias
@@ -106,24 +107,53 @@ def sensors_of(analysis: Analysis, standing: Standing) -> str:
 def facts(analysis: Analysis) -> list[Fact]:
     """Return the numbers that stand at the head of the report."""
     best = chosen_standing(analysis)
-    every = max(standings(analysis), key=lambda standing: standing.size)
-    level = f'{100 * analysis.level:g} %'
     found = [
         Fact(
             f'predicted {analysis.response.replace("_", " ")}',
             number(best.value),
-            f'{level} interval {interval(best.ci)}',
+            f'{_level(analysis)} interval {interval(best.ci)}',
         ),
-        Fact(
-            'against all sensors', signed(best.value - every.value), f'all: {number(every.value)}'
-        ),
+        _against_all(analysis, best),
         _certainty(analysis, best),
     ]
     if analysis.purchase is not None:
-        bought = next(s for s in analysis.purchase.sets if s.label == analysis.purchase.cheapest)
-        price = f'{number(bought.cost)} {analysis.purchase.currency}'
-        found.append(Fact('cheapest set not worse', bought.label, price))
+        found.append(_cheapest(analysis.purchase))
     return found
+
+
+def _level(analysis: Analysis) -> str:
+    return f'{100 * analysis.level:g} %'
+
+
+def _against_all(analysis: Analysis, best: Standing) -> Fact:
+    """Return what the choice earns more than all sensors, as a number where it can be told."""
+    label = 'against all sensors'
+    every = max(standings(analysis), key=lambda standing: standing.size)
+    if every.label == best.label:
+        return Fact(label, 'the same', 'it is all sensors')
+    gain = analysis.against_all
+    if gain is None or None in gain.ci:
+        note = f'predicted {signed(best.value - every.value)}; how surely, these runs cannot say'
+        return Fact(label, MISSING, note)
+    bounds = f'{_level(analysis)} interval {interval(gain.ci)}'
+    low, high = gain.ci
+    if low is not None and high is not None and low <= 0 <= high:
+        return Fact(label, 'no difference told', f'{signed(gain.fit)}, {bounds}')
+    return Fact(label, signed(gain.fit), f'{bounds}; all: {number(every.value)}')
+
+
+def _cheapest(purchase: Purchase) -> Fact:
+    """Return the cheapest set that is not worse, where one is that with the confidence asked."""
+    label = 'cheapest set not worse'
+    bought = next(s for s in purchase.sets if s.label == purchase.cheapest)
+    if bought.p_not_worse < purchase.confidence:
+        note = (
+            f'none with {percent(purchase.confidence)}; {bought.label} comes nearest, '
+            f'{chance(bought.p_not_worse)}'
+        )
+        return Fact(label, MISSING, note)
+    price = f'{number(bought.cost)} {purchase.currency}, {chance(bought.p_not_worse)}'
+    return Fact(label, bought.label, price)
 
 
 def sureness(analysis: Analysis) -> list[str]:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pandas as pd
 import pytest
+from hexapod_doe.analysis.findings import Estimate
 from hexapod_doe.reporting import text
 from hexapod_doe.reporting.figures import predictions
 from hexapod_doe.tables.table import CURVE_COLUMNS
@@ -104,10 +105,34 @@ def test_the_chosen_set_is_spelled_out(campaign):
 
 def test_the_facts_are_those_of_the_model_that_decides(campaign):
     assert campaign.two_part is not None
-    predicted, gain, *_ = text.facts(campaign)
+    predicted, *_ = text.facts(campaign)
     value = campaign.two_part.selected[campaign.choice]
     assert predicted.value == f'{value:.0f}'
-    assert gain.note == f'all: {campaign.two_part.selected["ABCDEFG"]:.0f}'
+
+
+def test_a_gain_is_a_number_only_where_its_interval_tells_it(campaign):
+    told = replace(campaign, against_all=Estimate(824.0, (12.0, 1600.0)))
+    gain = text.facts(told)[1]
+    assert gain.value == '+824'
+    assert '90 % interval 12.0 to 1600; all: ' in gain.note
+    vague = replace(campaign, against_all=Estimate(824.0, (-12.0, 1600.0)))
+    gain = text.facts(vague)[1]
+    assert gain.value == 'no difference told'
+    assert gain.note == '+824, 90 % interval −12.0 to 1600'
+    assert text.facts(replace(campaign, against_all=None))[1].value == '–'
+
+
+@pytest.mark.parametrize(('p', 'told'), [(0.97, True), (0.48, False)])
+def test_a_cheapest_set_is_named_only_with_the_confidence_asked_for(campaign, p, told):
+    bought = campaign.purchase.cheapest
+    sets = tuple(
+        replace(s, p_not_worse=p) if s.label == bought else s for s in campaign.purchase.sets
+    )
+    purchase = replace(campaign.purchase, sets=sets, confidence=0.9)
+    fact = text.facts(replace(campaign, purchase=purchase))[-1]
+    assert (fact.value == bought) == told
+    assert f'{100 * p:.0f}' in fact.note
+    assert bought in f'{fact.value} {fact.note}'
 
 
 def test_an_untrained_choice_is_called_a_prediction(campaign):

@@ -1,0 +1,115 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""What to type next: from a plan over its runs and their analysis to the confirmation."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Sequence
+from pathlib import Path
+
+from hexapod_agent.config import AgentConfig
+
+from hexapod_doe.bags.run_identity import differences
+from hexapod_doe.campaigns.campaign import PLAN_FILE, shared_settings
+from hexapod_doe.campaigns.folder import read_progress
+from hexapod_doe.campaigns.plan_copy import CONFIG_FILE
+from hexapod_doe.campaigns.progress import Progress, Run, State
+from hexapod_doe.designs.plan_file import read_plan
+
+CONFIRM_FOLDER = 'confirm'
+"""Where a campaign's confirmation runs are."""
+_RUN = 'ros2 run hexapod_doe'
+_FLEET = '/fleet'
+
+
+def after_status(folder: Path, progress: Progress) -> list[str]:
+    """Return the lines to type after a look at a campaign; none while it runs."""
+    if progress.having(State.RUNNING):
+        return []
+    if len(progress.having(State.DONE)) < len(progress.runs):
+        return (
+            [] if progress.having(State.OTHER) else [_train(folder, progress, folder / PLAN_FILE)]
+        )
+    settings = read_plan(folder / PLAN_FILE).settings
+    if settings is not None and settings.confirms:
+        main = folder.parent
+        return [_analyze(main)] if (main / PLAN_FILE).is_file() else []
+    return _confirming(folder, progress) or [_analyze(folder)]
+
+
+def after_analysis(folder: Path, sets: Sequence[str], again: str) -> list[str]:
+    """Return the lines that confirm what an analysis chose.
+
+    Args:
+        folder: of the campaign.
+        sets: to confirm.
+        again: the line that was typed for the analysis.
+    """
+    if not (folder / PLAN_FILE).is_file():
+        return []
+    progress = read_progress(folder)
+    if len(progress.having(State.DONE)) < len(progress.runs):
+        return [*after_status(folder, progress), again]
+    if _confirm_plan(folder).is_file():
+        left = _confirming(folder, progress)
+        return [*left, again] if left else []
+    plain = ','.join('none' if label == '(none)' else label for label in sets)
+    line = f'{_RUN} plan confirm {_quoted(folder)} --sets {plain}'
+    return [line, _train(folder, progress, _confirm_plan(folder)), again]
+
+
+def after_confirm(folder: Path, plan: Path) -> list[str]:
+    """Return the lines to type once the runs that confirm are planned."""
+    return [_train(folder, read_progress(folder), plan), _analyze(folder, plan)]
+
+
+def _confirming(folder: Path, progress: Progress) -> list[str]:
+    """Return the line that goes on with a campaign's confirmation runs, if some are to come."""
+    plan = _confirm_plan(folder)
+    if not plan.is_file():
+        return []
+    found = read_progress(plan.parent)
+    done = len(found.having(State.DONE)) == len(found.runs)
+    return [] if done else [_train(folder, progress, plan)]
+
+
+def _confirm_plan(folder: Path) -> Path:
+    return folder / CONFIRM_FOLDER / PLAN_FILE
+
+
+def _train(folder: Path, progress: Progress, plan: Path) -> str:
+    """Return the line that trains a plan as the runs of a campaign were trained."""
+    begun = [run for run in progress.runs.values() if run.settings]
+    episodes = max((run.planned for run in begun), default=0)
+    fleet = any(run.worker == _FLEET for run in begun)
+    given = {'episodes': str(episodes)} if episodes else {}
+    if config := _config(folder, begun):
+        given['hyperparameters' if fleet else 'config'] = config
+    if fleet:
+        options = [f'--{key} {value}' for key, value in given.items()]
+        return ' '.join([f'{_RUN} run_fleet --plan {_quoted(plan)}', *options])
+    options = [f'{key}:={value}' for key, value in given.items()]
+    launch = f'ros2 launch hexapod_bringup campaign.launch.xml plan:={_quoted(plan)}'
+    return ' '.join([launch, *options])
+
+
+def _config(folder: Path, begun: Sequence[Run]) -> str:
+    """Return the hyper-parameter file of runs; 'FILE' where the folder lacks it, '' for none."""
+    if (folder / CONFIG_FILE).is_file():
+        return _quoted(folder / CONFIG_FILE)
+    if not begun:
+        return ''
+    expected = shared_settings(AgentConfig.load(), begun[0].planned)
+    return 'FILE' if differences(begun[0].settings, expected) else ''
+
+
+def _analyze(folder: Path, confirm: Path | None = None) -> str:
+    line = f'{_RUN} analyze {_quoted(folder)} --out {_quoted(folder / "report")}'
+    apart = confirm is not None and confirm.parent != folder / CONFIRM_FOLDER
+    return f'{line} --confirm {_quoted(confirm.parent)}' if confirm and apart else line
+
+
+def _quoted(path: Path) -> str:
+    return shlex.quote(str(path))

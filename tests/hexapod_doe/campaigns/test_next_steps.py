@@ -1,0 +1,110 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""From the first plan to the judged confirmation by the lines that the tools print."""
+
+import json
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+from hexapod_doe.campaign_status import main as campaign_status
+from hexapod_doe.campaigns.campaign import read_rows
+
+from hexapod_doe import analyze, plan
+
+
+@pytest.fixture
+def campaign(tmp_path: Path) -> Path:
+    out = str(tmp_path / 'mine' / 'plan.csv')
+    half = ['--design', 'half', '--factors', '3', '--replicates', '3', '--confirm-runs', '2']
+    plan.main([*half, '--out', out])
+    return tmp_path / 'mine'
+
+
+@pytest.fixture
+def train(write_bag):
+    """Return what fills the rows of a plan: C is worth 20, and runs differ a little."""
+
+    def train(folder: Path, **changes: object) -> None:
+        for number, row in enumerate(read_rows(folder / 'plan.csv')):
+            gain = 5 + 2 * ('C' in row.observations) + 0.1 * (number % 3)
+            given = dict(row.metadata) | changes
+            write_bag(str(row.bag), gain=gain, **given)
+
+    return train
+
+
+def lines(text: str) -> list[str]:
+    """Return the lines that a tool says to type next."""
+    found = re.search(r'^next:\n((?:  .*\n)+)', text, re.MULTILINE | re.IGNORECASE)
+    return [line.strip() for line in found[1].splitlines()] if found else []
+
+
+def status(folder: Path, capsys) -> list[str]:
+    campaign_status([str(folder)])
+    return lines(capsys.readouterr().out)
+
+
+def test_the_lines_lead_from_the_plan_to_the_judged_confirmation(
+    campaign, train, tmp_path, capsys, monkeypatch
+):
+    monkeypatch.setattr(analyze, 'write_report', lambda analysis, out: out / 'index.html')
+    launch = 'ros2 launch hexapod_bringup campaign.launch.xml plan:='
+    assert status(campaign, capsys) == [f'{launch}{campaign}/plan.csv']
+    train(campaign)
+    (line,) = status(campaign, capsys)
+    assert line == f'ros2 run hexapod_doe analyze {campaign} --out {campaign}/report'
+
+    options = [str(campaign), '--factors', 'A,B,C', '--out', str(tmp_path / 'out')]
+    assert analyze.main(options) == 0
+    confirm, run, again = lines(capsys.readouterr().out)
+    assert run == f'{launch}{campaign}/confirm/plan.csv episodes:=3'
+    assert shlex.split(again) == ['ros2', 'run', 'hexapod_doe', 'analyze', *options]
+    words = shlex.split(confirm)
+    assert words[:5] == ['ros2', 'run', 'hexapod_doe', 'plan', 'confirm']
+
+    plan.main(words[4:])
+    assert lines(capsys.readouterr().out)[0] == run
+    assert status(campaign, capsys) == [run]
+    train(campaign / 'confirm')
+    (line,) = status(campaign / 'confirm', capsys)
+    assert line == f'ros2 run hexapod_doe analyze {campaign} --out {campaign}/report'
+
+    assert analyze.main(options) == 0
+    assert lines(capsys.readouterr().out) == []
+    record = json.loads((tmp_path / 'out' / 'analysis.json').read_text())
+    checks = {check['label']: check for check in record['confirmation']['checks']}
+    assert all(len(check['observed']) == 2 for check in checks.values())
+    assert checks['C']['passed']
+    assert record['design']['runs'] == 12  # those that confirm are not fitted
+
+
+def test_sets_are_those_that_the_analysis_puts_first(campaign, train, capsys):
+    train(campaign)
+    plan.main(['confirm', str(campaign), '--replicates', '4'])
+    assert re.match('12 runs: .*C', capsys.readouterr().out)
+
+
+def test_a_campaign_without_runs_has_nothing_to_confirm(campaign, capsys):
+    with pytest.raises(SystemExit):
+        plan.main(['confirm', str(campaign)])
+    assert 'none of a complete run' in capsys.readouterr().err
+    plan.main(['confirm', str(campaign), '--sets', 'C,none'])
+    assert len(read_rows(campaign / 'confirm' / 'plan.csv')) == 4
+
+
+def test_confirmation_runs_of_another_length_are_refused(campaign, train, tmp_path, capsys):
+    train(campaign)
+    plan.main(['confirm', str(campaign), '--sets', 'C'])
+    train(campaign / 'confirm', episodes=4)
+    assert analyze.main([str(campaign), '--factors', 'A,B,C', '--out', str(tmp_path / 'o')]) == 2
+    assert 'confirm: episodes 4, expected 3' in capsys.readouterr().err
+
+
+def test_the_configuration_that_the_folder_keeps_is_named(campaign, train, capsys):
+    (campaign / 'config.yaml').write_text('actor: {hidden: [8]}')
+    train(campaign)
+    plan.main(['confirm', str(campaign), '--sets', 'C'])
+    assert lines(capsys.readouterr().out)[0].endswith(f'config:={campaign}/config.yaml')
