@@ -36,7 +36,14 @@ from trajectory_msgs.msg import JointTrajectory
 from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.errors import BagError
 from hexapod_doe.replays.episodes import Series, Span, episode_of, recorded_episodes
-from hexapod_doe.replays.shadowing import COMMAND, Answer, Comparison, command_values, compare
+from hexapod_doe.replays.shadowing import (
+    COMMAND,
+    COMMAND_TYPE,
+    Answer,
+    Comparison,
+    command_values,
+    compare,
+)
 
 _OUTCOME = 'step_outcome'
 _POLL_S = 0.02
@@ -57,7 +64,7 @@ class ShadowNode(Node):
             BagError: a topic is missing, or it lacks a sample of a period.
         """
         super().__init__('shadow')
-        self._commands = Series(bag, COMMAND)
+        self._commands = Series(bag, COMMAND, COMMAND_TYPE)
         self._spans = list(spans)
         topics = {name: bag.topic(name) for name in (*spec.topics, _OUTCOME)}
         self._samples = _samples(bag, (*topics.values(), self._commands.topic), self._spans)
@@ -180,7 +187,7 @@ def shadow_on_graph(path: Path, checkpoint: Path, episode: int | None) -> list[C
         BagError: the bag cannot be shadowed, or the agent ended early.
     """
     bag, spec = BagFile(path), load(checkpoint).spec
-    spans = recorded_episodes(bag, Series(bag, COMMAND))
+    spans = recorded_episodes(bag, Series(bag, COMMAND, COMMAND_TYPE))
     if episode is not None:
         spans = [episode_of(episode, spans, bag)]
     with serving(

@@ -22,7 +22,7 @@ from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.errors import BagError
 from hexapod_doe.recorder_node import RecorderNode
 from hexapod_doe.replays.episodes import Series, recorded_episodes
-from hexapod_doe.replays.shadowing import COMMAND, Recorded, shadow
+from hexapod_doe.replays.shadowing import COMMAND, COMMAND_TYPE, Recorded, shadow
 from hexapod_doe.shadow import main
 from hexapod_doe.shadow_node import ShadowNode
 from hexapod_interfaces.action import TrainRun
@@ -138,7 +138,7 @@ SAMPLE = Path(__file__).resolve().parents[2] / 'bags' / 'sample'
 
 def test_without_an_agent_the_shadow_says_so(graph) -> None:
     bag = BagFile(SAMPLE)
-    spans = recorded_episodes(bag, Series(bag, COMMAND))
+    spans = recorded_episodes(bag, Series(bag, COMMAND, COMMAND_TYPE))
     node = graph.add(ShadowNode(bag, spans, ObservationSpec('')))
     with pytest.raises(BagError, match=r'/train_run: no server within 0\.1 s'):
         graph.result(start(node.play(SAMPLE / 'agent.pt', timeout_s=0.1)))

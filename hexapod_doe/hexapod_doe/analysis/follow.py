@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from hexapod_doe.bags.run_record import read_topic
 from hexapod_doe.errors import BagError
+from hexapod_doe.replays.episodes import LINE_OFFSET, ODOMETRY
 
 BAND = 0.1
 """Distance from the line within which the robot has settled [m]."""
@@ -71,8 +72,8 @@ def read_track(bag: str | Path) -> Track:
     Raises:
         BagError: the bag cannot be read, or its topics odom and line_offset do not agree in time.
     """
-    positions = {time: m.pose.pose.position for time, m in read_topic(bag, 'odom')}
-    offsets = {time: m.offset for time, m in read_topic(bag, 'line_offset')}
+    positions = {time: m.pose.pose.position for time, m in read_topic(bag, 'odom', ODOMETRY)}
+    offsets = {time: m.offset for time, m in read_topic(bag, 'line_offset', LINE_OFFSET)}
     if not positions or positions.keys() != offsets.keys():
         raise BagError(
             f'bag {bag}: {len(positions)} samples of odom and {len(offsets)} of line_offset, '

@@ -5,41 +5,26 @@
 
 from __future__ import annotations
 
-import struct
 from collections import Counter
 from collections.abc import Collection, Iterator
-from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
-from typing import IO, Any, NamedTuple
-
-from mcap.exceptions import McapError, UnsupportedCompressionError
-from mcap.reader import McapReader, SeekingReader
-from zstandard import ZstdError
+from typing import Any, NamedTuple
 
 from hexapod_doe.bags.cdr import decompressed
-from hexapod_doe.bags.decoding import Decoders, short
+from hexapod_doe.bags.decoding import Decoders
 from hexapod_doe.bags.location import CONVERT, located
 from hexapod_doe.bags.mcap_file import (
-    PACKED_SUFFIX,
     Contents,
     RecordedTopic,
-    check_ends,
     gone_through,
     summed_up,
-    unpacked,
 )
 from hexapod_doe.bags.metadata import BagMetadata, bare_metadata, read_metadata
+from hexapod_doe.bags.opening import FileOpener
 from hexapod_doe.bags.rosbag2 import METADATA_FILE, OfferedQos
 from hexapod_doe.bags.run_bag import RUN_RECORD
 from hexapod_doe.errors import BagError
-
-DAMAGE = (
-    McapError, ZstdError, struct.error, ValueError, OSError,
-    LookupError, OverflowError, MemoryError,
-)  # fmt: skip
-"""What reading a damaged MCAP file raises: checksums are ValueErrors, a damaged index leads to
-channels that do not exist (LookupError), or to lengths beyond all memory (the last two)."""
 
 
 class RawMessage(NamedTuple):
@@ -74,7 +59,7 @@ class BagFile:
             BagError: missing, unfinished, cut, or not a bag with MCAP storage.
         """
         self.path = located(path)
-        self._unpacked: dict[Path, IO[bytes]] = {}
+        self._open = FileOpener(self.path)
         if self.path.is_dir():
             self.about = read_metadata(self.path)
             self._check_storage()
@@ -113,7 +98,7 @@ class BagFile:
         """Return what the bag says of its run; nothing where it is not of a run."""
         metadata: dict[str, str] = {}
         for file in self.files:
-            with self._reading(file) as reader:
+            with self._open.reading(file) as reader:
                 for record in reader.iter_metadata():
                     if record.name == RUN_RECORD:
                         metadata.update(record.metadata)
@@ -146,22 +131,28 @@ class BagFile:
             return [name]
         return sorted(topic for topic in self.types if topic.endswith('/' + name))
 
-    def topic(self, name: str) -> str:
+    def topic(self, name: str, kind: str = '') -> str:
         """Return the one topic that has the name, or whose name ends with it.
 
+        Args:
+            name: whole, or its end.
+            kind: message type that it must have; '' for any.
+
         Raises:
-            BagError: none, or several.
+            BagError: none, or several, or one of another type.
         """
         found = self.found(name)
         if len(found) > 1:
-            times = 'twice' if len(found) == 2 else f'{len(found)} times'
             raise BagError(
-                f"bag {self.path}: topic '{name}' is there {times}: {', '.join(found)}; "
-                'choose one by its whole name'
+                f'bag {self.path}: {several(name, found)}; choose one by its whole name'
             )
         if not found:
             have = ', '.join(sorted(self.types)) or 'none'
             raise BagError(f"bag {self.path}: topic '{name}' expected, topics are {have}")
+        if kind and self.types[found[0]] != kind:
+            raise BagError(
+                f'bag {self.path}: {found[0]} is of type {self.types[found[0]]}, expected {kind}'
+            )
         return found[0]
 
     def topic_of_type(self, type_name: str) -> str:
@@ -190,7 +181,7 @@ class BagFile:
         """
         read = 0
         for file in self.files:
-            with self._reading(file) as reader:
+            with self._open.reading(file) as reader:
                 for _, channel, message in reader.iter_messages(topics, starting_at=start_ns):
                     read += 1
                     yield RawMessage(channel.topic, message.log_time, decompressed(message.data))
@@ -211,7 +202,7 @@ class BagFile:
         read = 0
         for file in self.files:
             decoders = Decoders(self.path)
-            with self._reading(file) as reader:
+            with self._open.reading(file) as reader:
                 for schema, channel, message in reader.iter_messages([topic]):
                     read += 1
                     yield message.log_time, decoders.decode(schema, channel, message)
@@ -230,13 +221,12 @@ class BagFile:
         about: BagMetadata = self.about
         if about.storage != 'mcap':
             raise BagError(
-                f"bag {self.path}: storage '{about.storage}', expected a rosbag2 directory with "
-                f'MCAP storage; cure: {CONVERT}'
+                f"bag {self.path}: storage '{about.storage}', expected MCAP; cure: {CONVERT}"
             )
         if about.compression not in ('', 'zstd'):
             raise BagError(
-                f"bag {self.path}: compressed with '{about.compression}', expected zstd, or "
-                'compression within MCAP; cure: `ros2 bag convert` it'
+                f"bag {self.path}: compressed with '{about.compression}', expected zstd; "
+                'cure: `ros2 bag convert` it'
             )
 
     def _check_counts(self) -> None:
@@ -250,46 +240,15 @@ class BagFile:
             )
 
     def _sum_up(self, file: Path) -> Contents | None:
-        with self._reading(file) as reader:
+        with self._open.reading(file) as reader:
             return summed_up(reader)
 
     def _go_through(self, file: Path) -> Contents:
-        with self._opened(file) as stream:
+        with self._open.plain(file) as stream:
             return gone_through(stream)
 
-    @contextmanager
-    def _reading(self, file: Path) -> Iterator[McapReader]:
-        with self._opened(file) as stream:
-            check_ends(stream)
-            yield SeekingReader(stream, validate_crcs=True)
 
-    @contextmanager
-    def _opened(self, file: Path) -> Iterator[IO[bytes]]:
-        """Open a file of the bag; what goes wrong with it becomes a BagError."""
-        try:
-            with self._plain(file).open('rb') as stream:
-                yield stream
-        except BagError:
-            raise
-        except FileNotFoundError as error:
-            raise BagError(
-                f'bag {self.path}: {file.name} is missing, expected every file that its '
-                f'{METADATA_FILE} lists; cure: copy it, or give one of the others by itself'
-            ) from error
-        except UnsupportedCompressionError as error:
-            raise BagError(
-                f'bag {self.path}: {file.name}: {error}, expected chunks in lz4, zstd or plain'
-            ) from error
-        except DAMAGE as error:
-            raise BagError(
-                f'bag {self.path}: {file.name} is damaged ({short(error)}), '
-                'expected a whole MCAP file'
-            ) from error
-
-    def _plain(self, file: Path) -> Path:
-        """Return a file as MCAP; one that is compressed as a whole is unpacked once."""
-        if file.suffix != PACKED_SUFFIX:
-            return file
-        if file not in self._unpacked:
-            self._unpacked[file] = unpacked(file)
-        return Path(self._unpacked[file].name)
+def several(name: str, found: Collection[str]) -> str:
+    """Say that a topic's name may mean several."""
+    times = 'twice' if len(found) == 2 else f'{len(found)} times'
+    return f"topic '{name}' is there {times}: {', '.join(found)}"

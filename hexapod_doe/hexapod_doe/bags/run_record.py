@@ -65,18 +65,19 @@ def read_run(bag: str | Path) -> RunRecord:
     return RunRecord(metadata['run_id'], metadata, episodes)
 
 
-def read_topic(bag: str | Path, topic: str) -> Iterator[tuple[int, Any]]:
+def read_topic(bag: str | Path, topic: str, kind: str = '') -> Iterator[tuple[int, Any]]:
     """Yield (time [ns], decoded message) of one topic, in the order of time.
 
     Args:
-        bag: a rosbag2 directory with MCAP storage, ours or not.
+        bag: a rosbag2 directory with MCAP storage, ours or not, or one of its files.
         topic: the full name, or its end where only one topic ends so ('imu/data').
+        kind: message type that it must have; '' for any.
 
     Raises:
-        BagError: the bag cannot be read, or has no such topic.
+        BagError: the bag cannot be read, or has no such topic of that type.
     """
     file = BagFile(Path(bag))
-    yield from file.decoded(file.topic(topic))
+    yield from file.decoded(file.topic(topic, kind))
 
 
 def _episode_row(result: Any) -> dict[str, Any]:

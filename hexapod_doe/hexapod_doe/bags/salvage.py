@@ -19,9 +19,9 @@ from typing import BinaryIO
 from mcap.records import Channel, McapRecord, Message, Metadata, Schema
 from mcap.stream_reader import StreamReader
 
-from hexapod_doe.bags.bag_file import DAMAGE
 from hexapod_doe.bags.bag_state import is_complete
 from hexapod_doe.bags.bag_writer import BagWriter
+from hexapod_doe.bags.opening import DAMAGE
 from hexapod_doe.bags.rosbag2 import Topic, offered_qos, partial_path
 from hexapod_doe.bags.run_bag import RUN_RECORD, SALVAGED
 from hexapod_doe.errors import BagError, LockingError

@@ -14,7 +14,7 @@ from hexapod_agent.contract.fields import checked_paths
 from hexapod_agent.observation import ObservationSpec
 from hexapod_sim.channel import Channel
 
-from hexapod_doe.bags.bag_file import BagFile
+from hexapod_doe.bags.bag_file import BagFile, several
 from hexapod_doe.contract.check_options import NAMESPACE
 from hexapod_doe.errors import BagError
 
@@ -73,10 +73,9 @@ def _name(bag: BagFile, topic: str, remapped: str | None, namespace: str | None)
         wanted = f'/{namespace.strip("/")}/{wanted}'.replace('//', '/')
     found = bag.found(wanted)
     if len(found) > 1:
-        times = 'twice' if len(found) == 2 else f'{len(found)} times'
         root = found[0].removesuffix(f'/{wanted}') or '/'
         raise BagError(
-            f"bag {bag.path}: topic '{wanted}' is there {times}: {', '.join(found)}; choose one: "
+            f'bag {bag.path}: {several(wanted, found)}; choose one: '
             f'-r {NAMESPACE}:={root} for all topics, or -r {topic}:={found[0]} for this one'
         )
     if not found and remapped is not None:

@@ -15,6 +15,7 @@ from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.bags.run_bag import EPISODE_RESULT
 from hexapod_doe.errors import BagError
 
+ODOMETRY = 'nav_msgs/msg/Odometry'
 LINE_OFFSET = 'hexapod_interfaces/msg/LineOffset'
 STEP_OUTCOME = 'hexapod_interfaces/msg/StepOutcome'
 
@@ -37,17 +38,18 @@ class Series:
         stamps: of the samples, in nanoseconds; a stamp that comes twice counts once.
     """
 
-    def __init__(self, bag: BagFile, name: str) -> None:
+    def __init__(self, bag: BagFile, name: str, kind: str) -> None:
         """Read a topic.
 
         Args:
             bag: where from.
             name: of the topic, or its end.
+            kind: its message type.
 
         Raises:
-            BagError: there is no such topic, or it is empty or damaged.
+            BagError: there is no such topic of that type, or it is empty or damaged.
         """
-        self.topic = bag.topic(name)
+        self.topic = bag.topic(name, kind)
         messages = (message for _, message in bag.decoded(self.topic))
         self._samples = {_stamp_ns(message.header.stamp): message for message in messages}
         self.stamps = sorted(self._samples)
@@ -74,7 +76,7 @@ def series_of_type(bag: BagFile, kind: str) -> Series | None:
     Raises:
         BagError: there are several, or the one is empty or damaged.
     """
-    return Series(bag, bag.topic_of_type(kind)) if kind in bag.types.values() else None
+    return Series(bag, bag.topic_of_type(kind), kind) if kind in bag.types.values() else None
 
 
 def recorded_episodes(bag: BagFile, clock: Series) -> list[Span]:

@@ -24,6 +24,7 @@ from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.errors import BagError
 from hexapod_doe.replays.episodes import (
     LINE_OFFSET,
+    ODOMETRY,
     STEP_OUTCOME,
     Series,
     Span,
@@ -115,7 +116,7 @@ class _Topics:
 
     def __init__(self, bag: BagFile) -> None:
         self._bag = bag
-        self.odom = Series(bag, 'odom')
+        self.odom = Series(bag, 'odom', ODOMETRY)
         self._others = [series_of_type(bag, kind) for kind in (LINE_OFFSET, STEP_OUTCOME)]
 
     def samples(self, span: Span) -> list[_Sample]:

@@ -33,6 +33,7 @@ from hexapod_doe.errors import BagError
 from hexapod_doe.replays.episodes import Series, Span
 
 COMMAND = 'cpg/command'
+COMMAND_TYPE = 'hexapod_interfaces/msg/CpgCommand'
 Action = NDArray[np.float32]
 Values = NDArray[np.float64]
 Answer = tuple[int, Values, Values]
@@ -97,10 +98,14 @@ class Recorded:
         Raises:
             BagError: one is missing.
         """
-        self.commands = Series(bag, COMMAND)
+        self.commands = Series(bag, COMMAND, COMMAND_TYPE)
         self._bag = bag
         self._spec = spec
-        self._sensors = {topic: Series(bag, topic) for topic in spec.topics}
+        self._sensors = {
+            topic: Series(bag, topic, channel.message_type)
+            for channel in spec.channels
+            for topic in channel.topics
+        }
 
     def observation(self, stamp_ns: int, previous: Action) -> Action:
         """Return what the agent observes at a stamp, after an action.

@@ -13,6 +13,8 @@ from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.bags.bag_state import find_bags
 from hexapod_doe.bags.run_record import read_run, read_topic
 from hexapod_doe.errors import BagError
+from hexapod_doe.replays.rescoring import rescore
+from hexapod_sim.task import TaskConfig
 from mcap.writer import CompressionType, Writer
 
 from .conftest import HELLO, Recorded, write_file
@@ -175,3 +177,11 @@ def test_two_robots_are_there_twice() -> None:
 def test_an_empty_bag_is_no_run(foreign) -> None:
     with pytest.raises(BagError, match='expected the bag of a run'):
         read_run(foreign(Recorded(messages=())))
+
+
+def test_a_topic_of_another_type_is_not_read_for_the_one_that_is_meant(foreign) -> None:
+    bag = foreign(Recorded('/robot/odom'))
+    with pytest.raises(BagError, match='/robot/odom is of type std_msgs/msg/String'):
+        next(read_topic(bag, 'odom', 'nav_msgs/msg/Odometry'))
+    with pytest.raises(BagError, match='is of type std_msgs/msg/String, expected nav_msgs'):
+        next(rescore(BagFile(bag), TaskConfig()))

@@ -147,7 +147,7 @@ def test_foreign_bag_is_no_run_but_its_topics_can_be_read(tmp_path):
 
 def test_other_storage(tmp_path):
     bag = foreign_bag(tmp_path / 'talk', StoragePlugin.SQLITE3)
-    with pytest.raises(BagError, match=r"storage 'sqlite3', expected .* MCAP"):
+    with pytest.raises(BagError, match=r"storage 'sqlite3', expected MCAP; cure: .ros2 bag"):
         read_run(bag)
 
 
