@@ -38,6 +38,22 @@ def test_wrong_usage_exits_with_2(words, capsys):
     assert 'usage: ros2' in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    'words',
+    [
+        ['action', 'list', '--no-daemon'],
+        ['action', 'info', '/a', '--spin-time', '1'],
+        ['service', 'type', '/a', '-s'],
+        ['topic', 'hz', '/a', '--no-daemon'],
+    ],
+)
+def test_options_that_the_original_lacks_are_refused(words, capsys):
+    with pytest.raises(SystemExit) as caught:
+        main(words)
+    assert caught.value.code == 2
+    assert 'unrecognized arguments' in capsys.readouterr().err
+
+
 def test_packages_are_listed_without_waiting_for_rclpy():
     code = "import sys, ros2_mini.cli as c; c.main(['pkg', 'list']); print('rclpy' in sys.modules)"
     done = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True, check=True)

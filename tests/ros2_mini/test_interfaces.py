@@ -49,10 +49,11 @@ Point point
 \tfloat64 y
 \tfloat64 z
 """
-SET_BOOL = """bool data
+# ros2interface 0.32.2 leaves the mark of a comment that a blank parts from it.
+SET_BOOL = """bool data #
 ---
-bool success
-string message
+bool success   #
+string message #
 """
 
 

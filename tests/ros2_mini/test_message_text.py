@@ -79,5 +79,5 @@ def test_unicode_stays_readable():
     assert message_to_yaml(String(data='σ = 0.2')) == 'data: σ = 0.2\n'
 
 
-def test_csv_is_flat(joints):
-    assert message_to_csv(joints) == '0,0,base_link,hip,knee,0.5,-1.0'
+def test_csv_is_flat_with_a_column_for_each_empty_array(joints):
+    assert message_to_csv(joints) == '0,0,base_link,hip,knee,0.5,-1.0,,'

@@ -27,8 +27,13 @@ _DISCOVERY_TOPIC = 'ros_discovery_info'  # every context has one publisher of it
 _UNKNOWN_NODE = '_NODE_NAME_UNKNOWN_'
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments that every verb takes which looks at the graph."""
+def add_arguments(parser: argparse.ArgumentParser, daemon: bool = True) -> None:
+    """Declare the arguments of verbs that look at the graph.
+
+    Args:
+        parser: Of the verb.
+        daemon: Whether the original asks its daemon, unless it is told not to.
+    """
     parser.add_argument(
         '--spin-time',
         type=float,
@@ -38,7 +43,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '-s', '--use-sim-time', action='store_true', help='Enable ROS simulation time'
     )
-    parser.add_argument('--no-daemon', action='store_true', help='Accepted; there is no daemon')
+    if daemon:
+        parser.add_argument(
+            '--no-daemon', action='store_true', help='Accepted; there is no daemon'
+        )
 
 
 def wait_for(look: Callable[[], Found], limit: float) -> Found:

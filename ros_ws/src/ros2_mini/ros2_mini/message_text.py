@@ -5,7 +5,6 @@
 
 import array
 import math
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -95,15 +94,17 @@ def message_to_csv(message: Any, **options: Any) -> str:
         message: Any ROS message.
         options: `truncate_length`, `no_arr` and `no_str` of `message_to_yaml`.
     """
-    return ','.join(_leaves(message_to_dict(message, **options)))
+    return _joined(message_to_dict(message, **options))
 
 
-def _leaves(value: Any) -> Iterator[str]:
-    if isinstance(value, dict | list):
-        for item in value.values() if isinstance(value, dict) else value:
-            yield from _leaves(item)
-    else:
-        yield str(value)
+def _joined(value: Any) -> str:
+    """Return values with commas between; an empty array is an empty column, unless it is first."""
+    if not isinstance(value, dict | list):
+        return str(value)
+    text = ''
+    for item in value.values() if isinstance(value, dict) else value:
+        text += (',' if text else '') + _joined(item)
+    return text
 
 
 def _cut(text: str, length: int | None) -> str:

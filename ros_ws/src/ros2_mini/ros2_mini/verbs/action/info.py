@@ -12,7 +12,7 @@ from rclpy.action import (
 )
 from rclpy.node import Node
 
-from ros2_mini import discovery, listing
+from ros2_mini import listing
 from ros2_mini.names import full_name
 from ros2_mini.node_context import graph_node
 from ros2_mini.topics import expanded
@@ -20,7 +20,6 @@ from ros2_mini.topics import expanded
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of `ros2 action info`."""
-    discovery.add_arguments(parser)
     parser.add_argument('action_name', help="Name of the ROS action (e.g. '/fibonacci')")
     listing.add_types_argument(parser, 'action')
     parser.add_argument(
@@ -31,7 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(args: argparse.Namespace) -> int:
     """Print the nodes that use or serve the action."""
-    with graph_node(args.spin_time) as node:
+    with graph_node() as node:
         action = expanded(node, args.action_name)
         roles = {
             'clients': _nodes(node, action, get_action_client_names_and_types_by_node),

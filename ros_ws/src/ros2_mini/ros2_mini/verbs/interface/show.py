@@ -63,13 +63,14 @@ def definition(name: str, *, comments: bool, nested: bool, depth: int = 0) -> It
 
 
 def _without_comment(text: str, spec: MessageSpecification) -> str:
-    """Return a line less its comment; a `#` inside a default value is none."""
+    """Return a line less its comment, as the original cuts it.
+
+    A field keeps a `#` that a blank parts from the comment, and a constant keeps the comment.
+    """
     if spec.annotations['comment']:
         return ''
-    for part in (*spec.fields, *spec.constants):
-        for comment in part.annotations['comment']:
-            return text[: text.find(comment)].rstrip(' #')
-    return text
+    comments = spec.fields[0].annotations['comment'] if spec.fields else []
+    return text[: text.find(comments[0]) - 1].strip() if comments else text
 
 
 def _nested_type(spec: MessageSpecification) -> str | None:

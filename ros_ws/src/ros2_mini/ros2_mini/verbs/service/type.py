@@ -5,17 +5,16 @@
 
 import argparse
 
-from ros2_mini import discovery, listing
+from ros2_mini import listing
 from ros2_mini.node_context import graph_node
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of `ros2 service type`."""
-    discovery.add_arguments(parser)
     parser.add_argument('service_name', help="Name of the ROS service (e.g. '/set_flag')")
 
 
 def main(args: argparse.Namespace) -> int:
     """Print the types of the service; print nothing and fail if there is no such service."""
-    with graph_node(args.spin_time) as node:
+    with graph_node() as node:
         return listing.print_types(node.get_service_names_and_types(), args.service_name)

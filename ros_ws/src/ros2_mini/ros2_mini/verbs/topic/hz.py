@@ -23,7 +23,7 @@ _FOREVER = float('inf')
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of `ros2 topic hz`."""
-    discovery.add_arguments(parser)
+    discovery.add_arguments(parser, daemon=False)
     parser.add_argument('topic_name', nargs='+', help="Names of the ROS topics (e.g. '/chatter')")
     parser.add_argument(
         '-w', '--window', dest='window_size', metavar='WINDOW', type=int,
