@@ -13,6 +13,7 @@ from hexapod_doe.analysis.results import Analysis, Prediction
 from hexapod_doe.fitting.alias_matrix import short_alias
 from hexapod_doe.reporting.formats import MISSING, aligned, chance, interval
 from hexapod_doe.reporting.standing import Standing, standings
+from hexapod_doe.sheets.write import write_csv
 
 MAX_ROWS = 512
 """Sets listed on the page; the CSV has all."""
@@ -38,7 +39,7 @@ class Table:
 
     def save(self, folder: Path) -> None:
         """Write the CSV."""
-        self.data.to_csv(folder / f'{self.name}.csv', index=False, lineterminator='\n')
+        write_csv(self.data, folder / f'{self.name}.csv')
 
 
 def predictions(analysis: Analysis) -> Table:

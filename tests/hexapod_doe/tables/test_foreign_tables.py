@@ -259,3 +259,9 @@ def test_a_heading_in_any_form_is_read_or_named(
             return
         shown = ' '.join(table.caveats) + ''.join(table.factors)
     assert ' '.join(heading.strip('\u200b\ufeff').split()).strip('\u200b\ufeff ') in shown
+
+
+def test_a_centre_point_is_none_of_the_sets() -> None:
+    labels = one('80_center_partial.csv').rows['label']
+    assert labels.tolist().count('(none)') == 2
+    assert labels.iloc[-1] == 'centre CD'

@@ -15,6 +15,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from hexapod_doe.reporting.figures.style import NARROW, RC, ROLES, WIDE
+from hexapod_doe.sheets.write import write_csv
 
 _VARIABLES = {values[0]: f'var(--{role})' for role, values in ROLES.items()}
 _COLOUR = re.compile('|'.join(_VARIABLES))
@@ -54,7 +55,7 @@ class Chart:
             figure = self.draw(NARROW if self.half else WIDE)
             figure.suptitle(self.title, x=0.01, ha='left', fontsize=9.5, wrap=True)
             figure.savefig(figures / f'{self.name}.png', dpi=_PNG_DPI)
-        self.data.to_csv(tables / f'{self.name}.csv', index=False, lineterminator='\n')
+        write_csv(self.data, tables / f'{self.name}.csv')
 
     def _svg(self, width: float) -> str:
         # The salt keeps the ids of clip paths apart among the figures of one page.
