@@ -70,6 +70,8 @@ class PlayerNode(Node):
         super().__init__('player', parameter_overrides=list(parameter_overrides))
         declare(self, PARAMETERS)
         self.exit_status: int | None = None
+        if not self._value('bag'):
+            raise BagError("parameter 'bag' is not set, expected a bag: -p bag:=DIR")
         self._bag = BagFile(str(self._value('bag')))
         self._selection = self._selected()
         for line in self._selection.warnings():

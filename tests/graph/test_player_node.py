@@ -221,6 +221,8 @@ def test_publishers_offer_what_was_recorded(graph, tmp_path, offered):
 
 
 def test_nothing_to_play_is_refused(graph, bag):
+    with pytest.raises(BagError, match=r"'bag' is not set, expected a bag: -p bag:=DIR"):
+        add_player(graph, '')
     with pytest.raises(BagError, match=r'no message from start:=2\.0 s on, it lasts 0\.975 s'):
         add_player(graph, bag, start=2.0)
     with BagWriter(bag.with_name('none'), {}) as writer:

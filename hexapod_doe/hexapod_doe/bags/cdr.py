@@ -16,13 +16,13 @@ _NANOSECONDS = 1_000_000_000
 _LITTLE = struct.Struct('<4xiI')
 _BIG = struct.Struct('>4xiI')
 _HEADER_BYTES = 4
-# Representation identifiers 0x0000 (CDR_BE) to 0x000b (DELIMITED_CDR2_LE) of the same table.
-_ENCODINGS = range(0x0C)
+# Of the identifiers in the same table ROS 2 uses plain CDR alone, big (0) and little endian (1).
+_ENCODINGS = (0, 1)
 _ZSTD_MAGIC = b'\x28\xb5\x2f\xfd'
 
 
 def is_cdr(data: bytes) -> bool:
-    """Whether a message begins as every serialised one does."""
+    """Whether a message begins as every one of ROS 2 does."""
     return len(data) >= _HEADER_BYTES and data[0] == 0 and data[1] in _ENCODINGS
 
 

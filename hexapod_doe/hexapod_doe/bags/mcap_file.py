@@ -143,7 +143,7 @@ def _recorded(channel: Channel, schemas: dict[int, Schema]) -> RecordedTopic:
     schema = schemas.get(channel.schema_id)
     return RecordedTopic(
         channel.topic,
-        _full_name(schema.name) if schema else '',
+        full_name(schema.name) if schema else '',
         channel.message_encoding,
         schema.data if schema else b'',
         schema.encoding if schema else '',
@@ -151,7 +151,7 @@ def _recorded(channel: Channel, schemas: dict[int, Schema]) -> RecordedTopic:
     )
 
 
-def _full_name(type_name: str) -> str:
+def full_name(type_name: str) -> str:
     """Return a type's name as ROS 2 has it: some writers leave out the kind."""
     package, slash, name = type_name.partition('/')
     return type_name if not slash or '/' in name else f'{package}/msg/{name}'

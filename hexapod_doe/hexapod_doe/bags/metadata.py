@@ -12,7 +12,7 @@ from typing import Any
 
 import yaml
 
-from hexapod_doe.bags.mcap_file import Contents
+from hexapod_doe.bags.mcap_file import Contents, full_name
 from hexapod_doe.bags.rosbag2 import METADATA_FILE, ROOT_KEY, VERSION, OfferedQos, offered_qos
 from hexapod_doe.errors import BagError
 
@@ -119,7 +119,7 @@ def _topic(entry: Mapping[str, Any]) -> ListedTopic:
     metadata = entry['topic_metadata']
     return ListedTopic(
         name=str(metadata['name']),
-        type_name=str(metadata['type']),
+        type_name=full_name(str(metadata['type'])),
         encoding=str(metadata.get('serialization_format') or 'cdr'),
         count=int(entry['message_count']),
         qos=offered_qos(metadata.get('offered_qos_profiles') or ()),

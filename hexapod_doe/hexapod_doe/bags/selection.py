@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, field
@@ -13,6 +14,8 @@ from hexapod_doe.bags.bag_file import BagFile, RawMessage
 from hexapod_doe.bags.cdr import is_cdr
 from hexapod_doe.bags.definition import departure, is_unproven
 from hexapod_doe.errors import BagError
+
+_NAME = re.compile(r'^/?[A-Za-z_]\w*(/[A-Za-z_]\w*)*$', re.ASCII)
 
 
 @dataclass
@@ -86,6 +89,8 @@ def select(bag: BagFile, names: Collection[str], importable: Callable[[str], obj
 
 def _reason(bag: BagFile, name: str, importable: Callable[[str], object]) -> str:
     """Return why a topic cannot be played; '' if it can."""
+    if not _NAME.match(name):
+        return 'ROS 2 has no such names, expected letters, digits and _ between slashes'
     kinds = bag.types_of(name)
     if len(kinds) > 1:
         return f'it was recorded with the types {" and ".join(kinds)}, expected one'

@@ -28,7 +28,7 @@ def test_too_short():
 
 def test_messages_begin_as_cdr_does(samples):
     assert is_cdr(samples.serialised_joints(5))
-    assert not any(map(is_cdr, (b'', b'\0\1\0', b'{"a": 1}', b'\0\x0c\0\0', b'\1\0\0\0')))
+    assert not any(map(is_cdr, (b'', b'\0\1\0', b'{"a": 1}', b'\0\x07\0\0', b'\1\0\0\0')))
 
 
 @pytest.mark.parametrize('sized', [True, False])

@@ -115,3 +115,17 @@ def test_a_class_that_cannot_be_imported_is_a_reason() -> None:
     found = select(file, list(file.types), missing)
     assert len(found.topics) == EIGHT - 2
     assert set(found.refused.values()) == {'sensor_msgs/msg/Imu has no class'}
+
+
+def test_a_name_that_ros_has_not_is_left_out(foreign) -> None:
+    found = selected(
+        foreign(Recorded(), Recorded('/top camera'), Recorded('/2d'), Recorded('a/b'))
+    )
+    assert found.topics == ['/chatter', 'a/b']
+    assert list(found.refused) == ['/top camera', '/2d']
+
+
+def test_a_short_name_of_a_type_is_the_same_type(foreign) -> None:
+    bag = foreign(Recorded(type_name='std_msgs/String'))
+    assert selected(bag).topics == ['/chatter']
+    assert BagFile(bag).types_of('/chatter') == [STRING]
