@@ -8,13 +8,13 @@ article.yaml holds every value with its origin. A file of one's own names only w
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields, is_dataclass
-from importlib.resources import files
 from pathlib import Path
 from typing import Any, Literal, get_type_hints
 
 import yaml
 from hexapod_cpg.mapping import ActionRanges
 from hexapod_cpg.oscillator import HopfConfig
+from hexapod_sim.article import ARTICLE, article
 from hexapod_sim.task import TaskConfig
 from pydantic import TypeAdapter, ValidationError
 
@@ -25,8 +25,6 @@ from hexapod_agent.hyperparameters import (
     NoiseConfig,
     TrainingConfig,
 )
-
-ARTICLE = 'article.yaml'
 
 
 class ConfigError(ValueError):
@@ -81,7 +79,7 @@ class AgentConfig:
             ConfigError: A section or key is unknown, or a value is not what it expects.
         """
         _check_keys(cls, changes, source, '')
-        values = _merged(_read(files('hexapod_agent') / ARTICLE), changes)
+        values = _merged(article(), changes)
         try:
             config: AgentConfig = TypeAdapter(cls).validate_python(values)
         except ValidationError as error:

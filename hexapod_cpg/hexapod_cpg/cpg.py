@@ -23,8 +23,8 @@ class Cpg:
     x: np.ndarray
     y: np.ndarray
 
-    def __init__(self, config: HopfConfig | None = None, batch: tuple[int, ...] = ()) -> None:
-        self.config = config or HopfConfig()
+    def __init__(self, config: HopfConfig, batch: tuple[int, ...] = ()) -> None:
+        self.config = config
         self.batch = batch
         self.reset()
 

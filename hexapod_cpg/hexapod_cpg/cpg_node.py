@@ -67,7 +67,7 @@ class CpgNode(LifecycleNode):
         """
         super().__init__('cpg', parameter_overrides=list(parameter_overrides))
         declare(self, PARAMETERS)
-        config = ConfigParameters(self, HopfConfig, 'cpg')
+        config = ConfigParameters(self, HopfConfig.of_article(), 'cpg')
         value = {entry.name: self.get_parameter(entry.name).value for entry in PARAMETERS}
         self._locomotion = Locomotion(
             config.get(), JointGuard(value['max_joint_rate']), value['stop_rate']

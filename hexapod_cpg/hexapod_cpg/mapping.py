@@ -13,8 +13,10 @@ b_k, k_a, b_a); reading D2 takes (mu, omega, k_h, k_k, k_a) and leaves the biase
 
 from dataclasses import dataclass, fields
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
+from hexapod_sim.article import section
 
 from hexapod_sim import robot
 
@@ -63,21 +65,21 @@ class ActionRanges:
     Action zero is a straight tripod walk.
     """
 
-    mu: tuple[float, float] = (1.0, 0.3)
-    frequency: tuple[float, float] = (2.0 * np.pi / 0.6, 2.0)
-    hip_gain: tuple[float, float] = (0.25, 0.15)
-    knee_gain: tuple[float, float] = (0.25, 0.10)
-    knee_bias: tuple[float, float] = (0.0, 0.10)
-    ankle_gain: tuple[float, float] = (0.0, 0.15)
-    ankle_bias: tuple[float, float] = (0.0, 0.10)
+    mu: tuple[float, float]
+    frequency: tuple[float, float]
+    hip_gain: tuple[float, float]
+    knee_gain: tuple[float, float]
+    knee_bias: tuple[float, float]
+    ankle_gain: tuple[float, float]
+    ankle_bias: tuple[float, float]
+
+    @classmethod
+    def of_article(cls, **changes: Any) -> 'ActionRanges':
+        """Return the ranges of article.yaml, with some values changed."""
+        return cls(**section('cpg', 'ranges') | changes)
 
 
-DEFAULT_RANGES = ActionRanges()
-
-
-def command_from_action(
-    action: np.ndarray, reading: str = 'D1', ranges: ActionRanges = DEFAULT_RANGES
-) -> Command:
+def command_from_action(action: np.ndarray, reading: str, ranges: ActionRanges) -> Command:
     """Turn the network's action into a command.
 
     Args:
@@ -106,9 +108,7 @@ def command_from_action(
     return Command(**values)
 
 
-def action_from_command(
-    command: Command, reading: str = 'D1', ranges: ActionRanges = DEFAULT_RANGES
-) -> np.ndarray:
+def action_from_command(command: Command, reading: str, ranges: ActionRanges) -> np.ndarray:
     """Return the action (..., 30), float32, that a command was made of.
 
     The inverse of `command_from_action`, up to the rounding of both; where a field has no width,

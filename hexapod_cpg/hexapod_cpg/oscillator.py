@@ -19,10 +19,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from types import MappingProxyType
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from annotated_types import Interval
+from hexapod_sim.article import section
 
 from hexapod_sim import robot
 
@@ -62,23 +63,28 @@ _Phase = Annotated[float, Interval(ge=-10.0, le=10.0)]
 
 @dataclass(frozen=True)
 class HopfConfig:
-    """Constants of the oscillator network."""
+    """Constants of the oscillator network; article.yaml has their values."""
 
-    alpha: _Rate = 20.0
+    alpha: _Rate
     """Convergence rate of x towards the limit cycle [1/s per squared radius]."""
-    beta: _Rate = 20.0
+    beta: _Rate
     """Convergence rate of y towards the limit cycle [1/s per squared radius]."""
-    coupling: _Rate = 0.5
+    coupling: _Rate
     """Strength delta of the coupling between legs [1/s]."""
-    gait: str = 'tripod'
+    gait: str
     """Gait: tripod, tetrapod or wave."""
-    swing_stance: bool = False
+    swing_stance: bool
     """Let swing (y < 0) and stance take the gait's shares of the cycle, instead of half each."""
-    sigmoid_gain: _Steepness = 50.0
+    sigmoid_gain: _Steepness
     """Steepness a of the change between swing and stance frequency."""
-    start_phase: _Phase = np.pi / 2
+    start_phase: _Phase
     """Common phase at the start [rad]. A quarter cycle starts every hip at mid-stroke, so that
     the first half-stance does not turn the robot."""
+
+    @classmethod
+    def of_article(cls, **changes: Any) -> 'HopfConfig':
+        """Return the oscillators of article.yaml, with some values changed."""
+        return cls(**section('cpg', 'hopf') | changes)
 
     def __post_init__(self) -> None:
         if self.gait not in GAITS:

@@ -54,7 +54,7 @@ class SimNode(Node):
     def __init__(self) -> None:
         super().__init__('sim')
         declare(self, PARAMETERS)
-        self._config = ConfigParameters(self, TaskConfig, 'task')
+        self._config = ConfigParameters(self, TaskConfig.of_article(), 'task')
         self._task = LineTask(self._config.get())
         value = {entry.name: self.get_parameter(entry.name).value for entry in PARAMETERS}
         paced = value['sync'] != REALTIME

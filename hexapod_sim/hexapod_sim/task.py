@@ -5,12 +5,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from annotated_types import Interval
 
 from hexapod_sim import robot
+from hexapod_sim.article import section
 from hexapod_sim.simulation import Simulation, SimulationDivergedError
 from hexapod_sim.sums import ordered_sum
 
@@ -33,52 +34,58 @@ _Angle = Annotated[float, Interval(ge=0.0, le=10.0)]
 
 @dataclass(frozen=True)
 class TaskConfig:
-    """Weights, scales and limits of the task.
+    """Weights, scales and limits of the task; article.yaml has their values.
 
-    The defaults keep every reasonable step positive, so that ending the episode early never
-    pays: with the robot upright, within 1 m of the line and not walking backwards, velocity and
-    closeness are at least zero and the two penalties take at most the constant.
+    With those every step within 0.75 m of the line is positive while the robot does not walk
+    backwards, whatever its attitude, so that ending the episode early never pays there: closeness
+    and the constant earn more than the two penalties take. Farther away a step may cost, down to
+    -6 for a robot that is about to stray, backwards, flipped and low.
     """
 
-    time_limit_steps: _Steps = 600
+    time_limit_steps: _Steps
     """Control periods of a full episode (15 s)."""
-    start_offset: _Distance = 0.5
+    start_offset: _Distance
     """Largest distance from the line at the start [m]; drawn uniformly to either side."""
-    line_y: _Place = 0.0
+    line_y: _Place
     """Where the goal line runs along odom's x axis, or the middle of where it jumps [m]."""
-    line_jump: _Place = 0.0
+    line_jump: _Place
     """Distance of a jumping line from line_y [m]; it begins on the right."""
-    line_period: _Duration = 0.0
+    line_period: _Duration
     """Time between two jumps [s]; 0 keeps the line at line_y."""
 
-    velocity_weight: _Weight = 1.0
+    velocity_weight: _Weight
     """Reward per unit of the velocity term."""
-    closeness_weight: _Weight = 1.0
+    closeness_weight: _Weight
     """Reward per unit of the closeness term."""
-    orientation_weight: _Weight = 0.5
+    orientation_weight: _Weight
     """Cost per unit of the orientation penalty."""
-    height_weight: _Weight = 0.5
+    height_weight: _Weight
     """Cost per unit of the height penalty."""
-    alive_reward: _Reward = 2.0
+    alive_reward: _Reward
     """Constant earned in every step."""
 
-    velocity_scale: _Scale = 0.3
+    velocity_scale: _Scale
     """Speed along the line that earns one [m/s]."""
-    orientation_scale: _Scale = 0.35
+    orientation_scale: _Scale
     """Angle from upright, or from the line's direction, that costs one [rad]."""
-    yaw_share: _Share = 1.0
+    yaw_share: _Share
     """How much of the squared yaw enters the orientation penalty: 1 as roll and pitch, 0 none."""
-    walking_height: _Scale = 0.1335
+    walking_height: _Scale
     """Mean height of base_link in the constant gait, measured [m]."""
-    height_scale: _Scale = 0.3
+    height_scale: _Scale
     """Share of the walking height whose error costs one."""
 
-    max_tilt: _Angle = 1.0
+    max_tilt: _Angle
     """Roll or pitch beyond which the robot counts as flipped [rad]."""
-    min_height: _Place = 0.05
+    min_height: _Place
     """Height of base_link under which the robot counts as collapsed [m]."""
-    max_offset: _Distance = 2.0
+    max_offset: _Distance
     """Distance from the line beyond which the robot counts as strayed [m]."""
+
+    @classmethod
+    def of_article(cls, **changes: Any) -> 'TaskConfig':
+        """Return the task of article.yaml, with some values changed."""
+        return cls(**section('task') | changes)
 
     def __post_init__(self) -> None:
         """Refuse a period that no count of control periods makes.
@@ -212,8 +219,8 @@ class LineTask:
         simulation: The robot.
     """
 
-    def __init__(self, config: TaskConfig | None = None) -> None:
-        self.config = config or TaskConfig()
+    def __init__(self, config: TaskConfig) -> None:
+        self.config = config
         self.simulation = Simulation()
         self._line_y = self.config.line_y
         self._step = 0

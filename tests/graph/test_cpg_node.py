@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from hexapod_cpg.cpg import Cpg
 from hexapod_cpg.cpg_node import CpgNode
-from hexapod_cpg.mapping import command_from_action
+from hexapod_cpg.mapping import ActionRanges, command_from_action
 from hexapod_cpg.messages import command_to_message
+from hexapod_cpg.oscillator import HopfConfig
 from hexapod_interfaces.msg import CpgCommand, CpgState
 from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.stamps import time_message, to_nanoseconds
@@ -21,6 +22,8 @@ from rclpy.parameter import Parameter
 from trajectory_msgs.msg import JointTrajectory
 
 from hexapod_sim import robot
+
+RANGES = ActionRanges.of_article()
 
 pytestmark = pytest.mark.graph
 START = 1_000_000_000
@@ -52,7 +55,7 @@ class Rig:
 
     def command(self, stamp_ns: int, spoil=lambda message: None) -> None:
         message = CpgCommand()
-        command_to_message(command_from_action(ACTION), message)
+        command_to_message(command_from_action(ACTION, 'D1', RANGES), message)
         message.header.stamp = time_message(stamp_ns)
         spoil(message)
         self.publisher.publish(message)
@@ -66,8 +69,8 @@ def rig(graph) -> Rig:
 def test_a_command_gives_the_trajectory_of_its_period_and_the_state_at_its_end(rig: Rig) -> None:
     rig.command(START)
     rig.graph.until(lambda: len(rig.trajectories) == 1 and len(rig.states) == 2)
-    cpg = Cpg()
-    targets = cpg.advance(command_from_action(ACTION))
+    cpg = Cpg(HopfConfig.of_article())
+    targets = cpg.advance(command_from_action(ACTION, 'D1', RANGES))
     (trajectory,) = rig.trajectories
     assert to_nanoseconds(trajectory.header.stamp) == START
     assert tuple(trajectory.joint_names) == robot.JOINTS

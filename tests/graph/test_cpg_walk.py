@@ -17,7 +17,7 @@ import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_cpg.locomotion import Motion
-from hexapod_cpg.mapping import COMMAND_FIELDS, command_from_action
+from hexapod_cpg.mapping import COMMAND_FIELDS, ActionRanges, command_from_action
 from hexapod_cpg.messages import command_to_message
 from hexapod_interfaces.msg import CpgCommand
 from hexapod_node.stamps import time_message, to_nanoseconds
@@ -29,6 +29,8 @@ from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
 
 from hexapod_sim import robot
+
+RANGES = ActionRanges.of_article()
 
 pytestmark = pytest.mark.graph
 PERIOD = robot.CONTROL_PERIOD_NS
@@ -147,7 +149,7 @@ class Walk:
         if action is None:
             action = self.random.uniform(-1.0, 1.0, 30)
         message = CpgCommand()
-        command_to_message(command_from_action(action), message)
+        command_to_message(command_from_action(action, 'D1', RANGES), message)
         if late_ns is None:
             late_ns = int(self.random.choice([0, 0, 0, 0, -PERIOD, PERIOD, SECOND, -SECOND]))
             if self.random.random() < 0.2:
@@ -281,7 +283,7 @@ def test_of_two_commanders_the_first_one_is_followed_and_the_other_one_told(grap
             walk._command(np.full(30, action), 0)
         played = walk.cpg._mode._samples.take()['cpg/command']
         np.testing.assert_array_equal(
-            played.hip_gain, command_from_action(np.full(30, 0.5)).hip_gain
+            played.hip_gain, command_from_action(np.full(30, 0.5), 'D1', RANGES).hip_gain
         )
         walk._pass_time(PERIOD)
     level, text, values = walk.cpg._health()

@@ -20,7 +20,7 @@ from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.play_node import PlayNode
 from hexapod_agent.training import Trainer
 from hexapod_cpg.cpg_node import CpgNode
-from hexapod_cpg.mapping import command_from_action
+from hexapod_cpg.mapping import ActionRanges, command_from_action
 from hexapod_cpg.messages import OutputMessages, command_to_message
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import CpgCommand
@@ -35,6 +35,8 @@ from trajectory_msgs.msg import JointTrajectory
 
 from hexapod_agent import checkpoint, real_time
 from hexapod_sim import robot
+
+RANGES = ActionRanges.of_article()
 
 pytestmark = pytest.mark.graph
 SEED = 6
@@ -257,7 +259,7 @@ def test_lock_step_pattern_generator(graph, count: int) -> None:
     cpg = graph.add(CpgNode())
     watch = Watch(cpg, rated=False)
     good = CpgCommand()
-    command_to_message(command_from_action(np.zeros(30)), good)
+    command_to_message(command_from_action(np.zeros(30), 'D1', RANGES), good)
     flood_lock_step(graph, cpg, 'cpg/command', good, count)
     played = watch.count
     values = dict(cpg._health()[2])

@@ -12,7 +12,7 @@ import pytest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_cpg.locomotion import Motion
-from hexapod_cpg.mapping import command_from_action
+from hexapod_cpg.mapping import ActionRanges, command_from_action
 from hexapod_cpg.messages import command_to_message
 from hexapod_interfaces.msg import CpgCommand, CpgState
 from hexapod_node.qos import DRIVER
@@ -24,6 +24,8 @@ from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
 
 from hexapod_sim import robot
+
+RANGES = ActionRanges.of_article()
 
 pytestmark = pytest.mark.graph
 RATE = 2.0
@@ -72,7 +74,7 @@ class Rig:
     def _publish(self) -> None:
         stamp = self.graph.nodes[0].get_clock().now().to_msg()
         command = CpgCommand()
-        command_to_message(command_from_action(np.zeros(30)), command)
+        command_to_message(command_from_action(np.zeros(30), 'D1', RANGES), command)
         command.header.stamp = stamp
         self._commander.publish(command)
         if self.pose is None:

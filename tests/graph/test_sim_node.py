@@ -15,7 +15,7 @@ from hexapod_interfaces.msg import FootContacts, LineOffset, StepOutcome
 from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.stamps import time_message, to_nanoseconds
 from hexapod_sim.sim_node import SimNode
-from hexapod_sim.task import LineTask, episode_seed
+from hexapod_sim.task import LineTask, TaskConfig, episode_seed
 from nav_msgs.msg import Odometry
 from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.parameter import Parameter
@@ -104,7 +104,7 @@ def test_the_offset_is_that_of_the_seed_and_of_the_pose(rig: Rig) -> None:
     offset = rig.listen('line_offset', LineOffset)
     odometry = rig.listen('odom', Odometry)
     rig.reset()
-    task = LineTask()
+    task = LineTask(TaskConfig.of_article())
     task.reset(SEED)
     assert offset[0].offset == task.line_offset
     assert odometry[0].pose.pose.position.y == pytest.approx(offset[0].offset)

@@ -8,8 +8,7 @@ from dataclasses import fields
 import pytest
 import yaml
 from hexapod_agent.config import AgentConfig, ConfigError
-
-from hexapod_agent import config as config_module
+from hexapod_sim.article import article_text
 
 
 @pytest.fixture
@@ -28,10 +27,6 @@ def leaves(mapping, prefix=''):
             yield from leaves(value, f'{prefix}{key}.')
         else:
             yield f'{prefix}{key}'
-
-
-def article_text() -> str:
-    return (config_module.files('hexapod_agent') / config_module.ARTICLE).read_text()
 
 
 def test_article_names_every_value():

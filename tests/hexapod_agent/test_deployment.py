@@ -12,9 +12,11 @@ from hexapod_agent.deployment import DeployedAgent
 from hexapod_agent.observation import ObservationError, ObservationSpec
 from hexapod_agent.policies import trained_policy
 from hexapod_agent.training import Trainer
-from hexapod_cpg.mapping import ACTION_SIZE, COMMAND_FIELDS, command_from_action
+from hexapod_cpg.mapping import ACTION_SIZE, COMMAND_FIELDS, ActionRanges, command_from_action
 
 from hexapod_agent import checkpoint
+
+RANGES = ActionRanges.of_article()
 
 SMALL = {'actor': {'hidden': [16, 12]}, 'critic': {'hidden': [16, 12]}}
 
@@ -39,7 +41,7 @@ def test_it_acts_as_the_policy_on_readings_and_its_last_action(path: str) -> Non
     for seed in range(3):
         seen = readings(agent.spec, seed)
         action = policy(agent.spec.assemble(seen, action))
-        expected = command_from_action(action)
+        expected = command_from_action(action, 'D1', RANGES)
         given = agent.act(seen)
         for field in COMMAND_FIELDS:
             np.testing.assert_array_equal(getattr(given, field), getattr(expected, field))

@@ -24,9 +24,9 @@ def evaluate(env: HexapodLine, policy: Policy) -> Evaluation:
 
 @pytest.mark.slow
 @pytest.mark.timeout(3600)
-@pytest.mark.parametrize(('name', 'episodes'), [('article.yaml', 60), ('swift.yaml', 100)])
+@pytest.mark.parametrize(('name', 'episodes'), [('', 60), ('swift.yaml', 100)])
 def test_short_training_steers_and_the_constant_action_does_not(name, episodes):
-    config = AgentConfig.load(str(files('hexapod_agent') / name))
+    config = AgentConfig.load(files('hexapod_agent') / name if name else None)
     env = HexapodLine('ABCDE', config)
     trainer = Trainer(ObservationSpec('ABCDE'), config, seed=1)
     summaries = [train_episode(env, trainer) for _ in range(episodes)]

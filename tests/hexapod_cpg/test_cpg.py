@@ -8,10 +8,18 @@ import dataclasses
 import numpy as np
 import pytest
 from hexapod_cpg.cpg import Cpg
-from hexapod_cpg.mapping import ACTION_SIZE, COMMAND_FIELDS, command_from_action, joint_targets
+from hexapod_cpg.mapping import (
+    ACTION_SIZE,
+    COMMAND_FIELDS,
+    ActionRanges,
+    command_from_action,
+    joint_targets,
+)
 from hexapod_cpg.oscillator import HopfConfig, start_state, trajectory
 
 from hexapod_sim import robot
+
+RANGES = ActionRanges.of_article()
 
 
 def actions(seed: int, *shape: int) -> np.ndarray:
@@ -19,18 +27,18 @@ def actions(seed: int, *shape: int) -> np.ndarray:
 
 
 def test_starts_and_restarts_on_the_limit_cycle() -> None:
-    cpg = Cpg()
-    expected = start_state(HopfConfig())
+    cpg = Cpg(HopfConfig.of_article())
+    expected = start_state(HopfConfig.of_article())
     np.testing.assert_array_equal((cpg.x, cpg.y), expected)
-    cpg.advance(command_from_action(actions(0)))
+    cpg.advance(command_from_action(actions(0), 'D1', RANGES))
     assert not np.array_equal(cpg.x, expected[0])
     cpg.reset()
     np.testing.assert_array_equal((cpg.x, cpg.y), expected)
 
 
 def test_advance_maps_every_sub_step() -> None:
-    cpg = Cpg()
-    command = command_from_action(actions(1))
+    cpg = Cpg(HopfConfig.of_article())
+    command = command_from_action(actions(1), 'D1', RANGES)
     xs, ys = trajectory(cpg.x, cpg.y, command.mu, command.frequency, cpg.config)
     targets = cpg.advance(command)
     assert targets.shape == (robot.SUBSTEPS, 18)
@@ -43,8 +51,8 @@ def test_advance_maps_every_sub_step() -> None:
 
 
 def test_reset_repeats_the_same_bits() -> None:
-    cpg = Cpg()
-    commands = [command_from_action(action) for action in actions(2, 30)]
+    cpg = Cpg(HopfConfig.of_article())
+    commands = [command_from_action(action, 'D1', RANGES) for action in actions(2, 30)]
     first = [cpg.advance(command) for command in commands]
     cpg.reset()
     np.testing.assert_array_equal([cpg.advance(command) for command in commands], first)
@@ -55,21 +63,21 @@ def test_reset_repeats_the_same_bits() -> None:
 def test_a_fleet_repeats_single_robots_to_the_last_bit(
     batch: tuple[int, ...], reading: str
 ) -> None:
-    fleet = Cpg(batch=batch)
-    singles = {index: Cpg() for index in np.ndindex(batch)}
+    fleet = Cpg(HopfConfig.of_article(), batch=batch)
+    singles = {index: Cpg(HopfConfig.of_article()) for index in np.ndindex(batch)}
     for action in actions(3, 40, *batch):
-        targets = fleet.advance(command_from_action(action, reading))
+        targets = fleet.advance(command_from_action(action, reading, RANGES))
         assert targets.shape == (*batch, robot.SUBSTEPS, 18)
         for index, single in singles.items():
-            alone = single.advance(command_from_action(action[index], reading))
+            alone = single.advance(command_from_action(action[index], reading, RANGES))
             np.testing.assert_array_equal(alone, targets[index])
             np.testing.assert_array_equal(single.x, fleet.x[index])
             np.testing.assert_array_equal(single.y, fleet.y[index])
 
 
 def test_state_survives_changes_of_the_targets() -> None:
-    cpg, other = Cpg(), Cpg()
-    command = command_from_action(actions(4))
+    cpg, other = Cpg(HopfConfig.of_article()), Cpg(HopfConfig.of_article())
+    command = command_from_action(actions(4), 'D1', RANGES)
     cpg.advance(command)[:] = 0.0
     other.advance(command)
     np.testing.assert_array_equal(cpg.advance(command), other.advance(command))
@@ -78,8 +86,8 @@ def test_state_survives_changes_of_the_targets() -> None:
 @pytest.mark.parametrize('field', COMMAND_FIELDS)
 @pytest.mark.parametrize('value', [np.nan, np.inf])
 def test_command_that_is_not_finite_is_named_and_changes_nothing(field: str, value: float) -> None:
-    cpg = Cpg()
-    good = command_from_action(actions(5))
+    cpg = Cpg(HopfConfig.of_article())
+    good = command_from_action(actions(5), 'D1', RANGES)
     spoilt = getattr(good, field).copy()
     spoilt[2] = value
     with (
@@ -87,12 +95,12 @@ def test_command_that_is_not_finite_is_named_and_changes_nothing(field: str, val
         pytest.raises(ValueError, match=f'command {field}: expected finite values'),
     ):
         cpg.advance(dataclasses.replace(good, **{field: spoilt}))
-    np.testing.assert_array_equal((cpg.x, cpg.y), start_state(HopfConfig()))
+    np.testing.assert_array_equal((cpg.x, cpg.y), start_state(HopfConfig.of_article()))
 
 
 def test_command_that_the_integration_cannot_follow_is_refused() -> None:
-    cpg = Cpg()
-    wild = dataclasses.replace(command_from_action(actions(6)), mu=np.full(6, 1e30))
+    cpg = Cpg(HopfConfig.of_article())
+    wild = dataclasses.replace(command_from_action(actions(6), 'D1', RANGES), mu=np.full(6, 1e30))
     with (
         np.errstate(invalid='ignore', over='ignore'),
         pytest.raises(ValueError, match='values that the integration can follow'),
@@ -102,6 +110,6 @@ def test_command_that_the_integration_cannot_follow_is_refused() -> None:
 
 @pytest.mark.parametrize('field', COMMAND_FIELDS)
 def test_command_of_another_shape_is_named(field: str) -> None:
-    good = command_from_action(actions(7))
+    good = command_from_action(actions(7), 'D1', RANGES)
     with pytest.raises(ValueError, match=rf'command {field}: expected shape \(6,\), got \(5,\)'):
-        Cpg().advance(dataclasses.replace(good, **{field: np.zeros(5)}))
+        Cpg(HopfConfig.of_article()).advance(dataclasses.replace(good, **{field: np.zeros(5)}))

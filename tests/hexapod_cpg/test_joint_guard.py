@@ -9,12 +9,15 @@ import numpy as np
 import pytest
 from hexapod_cpg.cpg import Cpg
 from hexapod_cpg.joint_guard import JointGuard
-from hexapod_cpg.mapping import command_from_action
+from hexapod_cpg.mapping import ActionRanges, command_from_action
+from hexapod_cpg.oscillator import HopfConfig
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from hexapod_sim import robot
+
+RANGES = ActionRanges.of_article()
 
 RATE = 6.2
 STEP = RATE * 0.005  # targets are 5 ms apart
@@ -47,8 +50,8 @@ def test_limits_alone_hold_whatever_comes_in(targets: np.ndarray) -> None:
 
 
 def test_a_walk_passes_bit_for_bit() -> None:
-    cpg, guard = Cpg(), JointGuard(RATE)
-    command = command_from_action(np.zeros(30))
+    cpg, guard = Cpg(HopfConfig.of_article()), JointGuard(RATE)
+    command = command_from_action(np.zeros(30), 'D1', RANGES)
     guard.position = cpg.advance(command)[-1]
     for _ in range(100):
         targets = cpg.advance(command)

@@ -12,7 +12,7 @@ import pytest
 from hexapod_cpg.cpg import Cpg
 from hexapod_cpg.joint_guard import JointGuard
 from hexapod_cpg.locomotion import Locomotion, Motion
-from hexapod_cpg.mapping import command_from_action
+from hexapod_cpg.mapping import ActionRanges, command_from_action
 from hexapod_cpg.oscillator import HopfConfig
 from hypothesis import given
 from hypothesis import strategies as st
@@ -20,17 +20,19 @@ from hypothesis.extra.numpy import arrays
 
 from hexapod_sim import robot
 
+RANGES = ActionRanges.of_article()
+
 RATE, STOP_RATE = 6.2, 0.5
-COMMAND = command_from_action(np.linspace(-1.0, 1.0, 30))
+COMMAND = command_from_action(np.linspace(-1.0, 1.0, 30), 'D1', RANGES)
 
 
 @pytest.fixture
 def legs() -> Locomotion:
-    return Locomotion(HopfConfig(), JointGuard(RATE), STOP_RATE)
+    return Locomotion(HopfConfig.of_article(), JointGuard(RATE), STOP_RATE)
 
 
 def test_in_lock_step_the_pattern_generators_targets_are_played_as_they_are(legs) -> None:
-    cpg = Cpg()
+    cpg = Cpg(HopfConfig.of_article())
     for _ in range(50):
         np.testing.assert_array_equal(legs.play(COMMAND), cpg.advance(COMMAND))
     assert legs.motion is Motion.WALKING
@@ -82,8 +84,8 @@ any_pose = arrays(np.float64, 18, elements=st.floats(-1.0, 1.0)).map(
 
 @given(any_pose, st.booleans())
 def test_from_any_pose_the_legs_rise_slowly_to_stand_before_they_walk(pose, commanded) -> None:
-    legs = Locomotion(HopfConfig(), JointGuard(RATE), STOP_RATE)
-    legs.wait(HopfConfig())
+    legs = Locomotion(HopfConfig.of_article(), JointGuard(RATE), STOP_RATE)
+    legs.wait(HopfConfig.of_article())
     legs.rise(pose)
     position, periods = pose, 0
     while legs.motion is not Motion.STANDING:
@@ -99,7 +101,9 @@ def test_from_any_pose_the_legs_rise_slowly_to_stand_before_they_walk(pose, comm
     # The rounding of many steps may cost one period more.
     needed = np.abs(pose - robot.NEUTRAL_POSE).max() / (STOP_RATE * 0.025)
     assert needed - 1e-9 <= periods <= needed + 2
-    np.testing.assert_array_equal(legs.cpg.x, Cpg().x)  # the gait has not begun
+    np.testing.assert_array_equal(
+        legs.cpg.x, Cpg(HopfConfig.of_article()).x
+    )  # the gait has not begun
     legs.walk(COMMAND)
     assert legs.motion is Motion.WALKING
 
@@ -111,7 +115,7 @@ def test_a_joint_measured_beyond_its_limit_begins_at_the_limit(legs) -> None:
 
 
 def test_nothing_moves_before_somebody_tells_where_the_joints_are(legs) -> None:
-    legs.wait(HopfConfig())
+    legs.wait(HopfConfig.of_article())
     for move in (legs.stop, lambda: legs.walk(COMMAND)):
         with pytest.raises(RuntimeError, match='expected rise'):
             move()

@@ -20,6 +20,8 @@ from hexapod_cpg.mapping import (
 
 from hexapod_sim import robot
 
+RANGES = ActionRanges.of_article()
+
 OMEGA = 2 * math.pi / 0.6
 ONE_LEG = np.array([1.0, -1.0, 0.5, -0.5, 0.2])
 
@@ -59,14 +61,14 @@ def test_action_zero_is_the_constant_gait_in_both_readings() -> None:
         'ankle_bias': 0.0,
     }
     for reading in READINGS:
-        zero = command_from_action(np.zeros(ACTION_SIZE), reading)
+        zero = command_from_action(np.zeros(ACTION_SIZE), reading, RANGES)
         for name, value in expected.items():
             np.testing.assert_array_equal(getattr(zero, name), np.full(6, value))
 
 
 def test_golden_command_of_d1() -> None:
     # (k_h, k_k, b_k, k_a, b_a): 0.25 + 0.15, 0.25 - 0.10, 0.5 * 0.10, -0.5 * 0.15, 0.2 * 0.10.
-    got = command_from_action(action_of('rm', ONE_LEG), 'D1')
+    got = command_from_action(action_of('rm', ONE_LEG), 'D1', RANGES)
     leg = robot.LEGS.index('rm')
     assert got.hip_gain[leg] == pytest.approx(0.40)
     assert got.knee_gain[leg] == pytest.approx(0.15)
@@ -77,13 +79,13 @@ def test_golden_command_of_d1() -> None:
     assert got.frequency[leg] == OMEGA
     for name in COMMAND_FIELDS:
         others = np.delete(getattr(got, name), leg)
-        np.testing.assert_array_equal(others, getattr(ActionRanges(), name)[0])
+        np.testing.assert_array_equal(others, getattr(ActionRanges.of_article(), name)[0])
 
 
 def test_golden_command_of_d2() -> None:
     # (mu, omega, k_h, k_k, k_a): 1 + 0.3, OMEGA - 2, 0.25 + 0.5 * 0.15, 0.25 - 0.5 * 0.10,
     # 0.2 * 0.15; the biases stay zero.
-    got = command_from_action(action_of('lf', ONE_LEG), 'D2')
+    got = command_from_action(action_of('lf', ONE_LEG), 'D2', RANGES)
     assert got.mu[0] == pytest.approx(1.3)
     assert got.frequency[0] == pytest.approx(OMEGA - 2.0)
     assert got.hip_gain[0] == pytest.approx(0.325)
@@ -116,7 +118,7 @@ def test_silent_command_is_the_neutral_pose() -> None:
 
 
 def test_swing_lifts_the_leg() -> None:
-    gait = command_from_action(np.zeros(ACTION_SIZE))
+    gait = command_from_action(np.zeros(ACTION_SIZE), 'D1', RANGES)
     swing = joint_targets(gait, np.zeros(6), np.full(6, -1.0))
     stance = joint_targets(gait, np.zeros(6), np.full(6, 1.0))
     assert np.all((swing - stance)[1::3] > 0)
@@ -128,8 +130,10 @@ def test_left_and_right_are_mirror_images() -> None:
     action = rng.uniform(-1, 1, (6, 5))
     x, y = rng.uniform(-1, 1, (2, 6))
     swap = [3, 4, 5, 0, 1, 2]
-    plain = joint_targets(command_from_action(action.ravel()), x, y).reshape(6, 3)
-    mirrored = joint_targets(command_from_action(action[swap].ravel()), x[swap], y[swap])
+    plain = joint_targets(command_from_action(action.ravel(), 'D1', RANGES), x, y).reshape(6, 3)
+    mirrored = joint_targets(
+        command_from_action(action[swap].ravel(), 'D1', RANGES), x[swap], y[swap]
+    )
     np.testing.assert_allclose(
         mirrored.reshape(6, 3), plain[swap] * [-1, 1, 1], rtol=0, atol=1e-15
     )
@@ -143,7 +147,9 @@ def test_whole_range_stays_inside_the_joint_limits(reading: str) -> None:
     actions = rng.choice([-1.0, 1.0], (500, ACTION_SIZE))
     phase = rng.uniform(0, 2 * math.pi, (500, 6))
     angles = joint_targets(
-        command_from_action(actions, reading), radius * np.cos(phase), radius * np.sin(phase)
+        command_from_action(actions, reading, RANGES),
+        radius * np.cos(phase),
+        radius * np.sin(phase),
     )
     assert np.all(angles > robot.JOINT_LOWER)
     assert np.all(angles < robot.JOINT_UPPER)
@@ -154,16 +160,19 @@ def test_batches_repeat_single_actions_to_the_last_bit(reading: str) -> None:
     rng = np.random.default_rng(3)
     actions = rng.uniform(-1, 1, (4, 3, ACTION_SIZE))
     x, y = rng.uniform(-1, 1, (2, 4, 3, 6))
-    batch = joint_targets(command_from_action(actions, reading), x, y)
+    batch = joint_targets(command_from_action(actions, reading, RANGES), x, y)
     assert batch.shape == (4, 3, 18)
     for index in np.ndindex(4, 3):
-        single = command_from_action(actions[index], reading)
+        single = command_from_action(actions[index], reading, RANGES)
         np.testing.assert_array_equal(joint_targets(single, x[index], y[index]), batch[index])
 
 
 def test_float32_actions_are_widened_first() -> None:
     action = np.linspace(-1, 1, ACTION_SIZE, dtype=np.float32)
-    narrow, wide = command_from_action(action), command_from_action(action.astype(np.float64))
+    narrow, wide = (
+        command_from_action(action, 'D1', RANGES),
+        command_from_action(action.astype(np.float64), 'D1', RANGES),
+    )
     for name in COMMAND_FIELDS:
         assert getattr(narrow, name).dtype == np.float64
         np.testing.assert_array_equal(getattr(narrow, name), getattr(wide, name))
@@ -171,24 +180,24 @@ def test_float32_actions_are_widened_first() -> None:
 
 def test_unknown_reading_is_named() -> None:
     with pytest.raises(ValueError, match="action reading 'D3': expected one of D1, D2"):
-        command_from_action(np.zeros(ACTION_SIZE), 'D3')
+        command_from_action(np.zeros(ACTION_SIZE), 'D3', RANGES)
 
 
 @pytest.mark.parametrize('shape', [(29,), (30, 1), ()])
 def test_action_of_another_shape_is_refused(shape: tuple[int, ...]) -> None:
     with pytest.raises(ValueError, match=r'action: expected shape \(\.\.\., 30\), got'):
-        command_from_action(np.zeros(shape))
+        command_from_action(np.zeros(shape), 'D1', RANGES)
 
 
 @pytest.mark.parametrize('reading', READINGS)
 def test_an_action_comes_back_from_its_command(reading: str) -> None:
     actions = np.random.default_rng(4).uniform(-1, 1, (4, 3, ACTION_SIZE)).astype(np.float32)
-    back = action_from_command(command_from_action(actions, reading), reading)
+    back = action_from_command(command_from_action(actions, reading, RANGES), reading, RANGES)
     assert back.dtype == np.float32
     np.testing.assert_allclose(back, actions, rtol=0, atol=1e-7)
 
 
 def test_a_field_without_width_comes_back_as_zero() -> None:
-    ranges = ActionRanges(hip_gain=(0.25, 0.0))
+    ranges = ActionRanges.of_article(hip_gain=(0.25, 0.0))
     back = action_from_command(command_from_action(np.ones(30), 'D1', ranges), 'D1', ranges)
     np.testing.assert_array_equal(back.reshape(6, 5), np.tile([0, 1, 1, 1, 1], (6, 1)))

@@ -15,7 +15,7 @@ from hexapod_sim import robot
 PERIOD_S = robot.CONTROL_PERIOD_NS * 1e-9
 SUBSTEP_S = robot.TARGET_PERIOD_NS * 1e-9
 OMEGA = 2 * math.pi / 0.6
-SINGLE = HopfConfig(coupling=0.0)
+SINGLE = HopfConfig.of_article(coupling=0.0)
 MU = np.ones(6)
 FREQUENCY = np.full(6, OMEGA)
 
@@ -76,7 +76,7 @@ def test_integration_is_of_fourth_order_in_the_sub_step() -> None:
     # exact solution is a rotation by omega t.
     def error(factor: int) -> float:
         x, y = np.ones(6), np.zeros(6)
-        config = HopfConfig(alpha=20.0 / factor, beta=20.0 / factor, coupling=0.0)
+        config = HopfConfig.of_article(alpha=20.0 / factor, beta=20.0 / factor, coupling=0.0)
         for _ in range(4 * factor):
             x, y = step(x, y, MU, np.full(6, 40.0 / factor), config)
         return float(abs(x[0] - math.cos(4.0)) + abs(y[0] - math.sin(4.0)))
@@ -95,7 +95,7 @@ def test_coupled_limit_cycle_and_period() -> None:
     # Locked, every Delta_ji is y_i, so y grows by an extra 5 delta y. Averaged over a turn the
     # squared radius settles near mu + 5 delta / (alpha + beta) = 1.0625; the period is longer by
     # less than one percent.
-    config = HopfConfig()
+    config = HopfConfig.of_article()
     xs, ys = run(config, *start_state(config), 800)
     settled = slice(1000, None)
     squared = (xs**2 + ys**2)[settled]
@@ -109,7 +109,7 @@ def test_coupled_limit_cycle_and_period() -> None:
 @pytest.mark.parametrize('gait', GAITS)
 @pytest.mark.parametrize('seed', [0, 1, 2])
 def test_gait_returns_from_perturbed_phases(gait: str, seed: int) -> None:
-    config = HopfConfig(gait=gait)
+    config = HopfConfig.of_article(gait=gait)
     rng = np.random.default_rng(seed)
     phase = np.array(GAITS[gait].phases) + rng.uniform(-0.8, 0.8, 6)
     radius = rng.uniform(0.5, 1.5, 6)
@@ -130,7 +130,7 @@ def test_uncoupled_legs_do_not_return() -> None:
 
 @pytest.mark.parametrize('gait', GAITS)
 def test_start_is_on_the_limit_cycle_in_the_gaits_phases(gait: str) -> None:
-    config = HopfConfig(gait=gait)
+    config = HopfConfig.of_article(gait=gait)
     x, y = start_state(config)
     np.testing.assert_allclose(np.hypot(x, y), 1.0, rtol=1e-15)
     np.testing.assert_allclose(phase_error(x, y, config), 0.0, atol=1e-12)
@@ -141,7 +141,7 @@ def test_start_is_on_the_limit_cycle_in_the_gaits_phases(gait: str) -> None:
 
 def test_tripod_joins_the_legs_of_a_tripod() -> None:
     # Support triangles: front and rear of one side with the middle of the other.
-    x, y = start_state(HopfConfig(start_phase=0.3))
+    x, y = start_state(HopfConfig.of_article(start_phase=0.3))
     phase = dict(zip(robot.LEGS, np.arctan2(y, x), strict=True))
     for legs in (('lf', 'lr', 'rm'), ('rf', 'rr', 'lm')):
         assert np.ptp([phase[leg] for leg in legs]) < 1e-12
@@ -173,7 +173,7 @@ def test_duty_factors_are_those_of_the_gaits() -> None:
 
 @pytest.mark.parametrize('gait', GAITS)
 def test_swing_and_stance_take_the_shares_of_the_duty_factor(gait: str) -> None:
-    config = HopfConfig(gait=gait, coupling=0.0, swing_stance=True)
+    config = HopfConfig.of_article(gait=gait, coupling=0.0, swing_stance=True)
     frequency = 2 * np.pi / 2.0
     _, ys = run(config, *start_state(config), 1600, frequency)
     # 40 s are 20 cycles of 2 s. The change between the two speeds is smooth, hence the tolerance.
@@ -184,7 +184,7 @@ def test_swing_and_stance_take_the_shares_of_the_duty_factor(gait: str) -> None:
 
 def test_foot_moves_forwards_in_swing() -> None:
     # y < 0 is swing: there x must grow.
-    config = HopfConfig()
+    config = HopfConfig.of_article()
     xs, ys = run(config, *start_state(config), 100)
     growth = np.diff(xs, axis=0)
     assert np.all(growth[ys[:-1] < -0.1] > 0)
@@ -193,7 +193,7 @@ def test_foot_moves_forwards_in_swing() -> None:
 
 @pytest.mark.parametrize('swing_stance', [False, True])
 def test_batches_repeat_single_robots_to_the_last_bit(swing_stance: bool) -> None:
-    config = HopfConfig(gait='wave', swing_stance=swing_stance)
+    config = HopfConfig.of_article(gait='wave', swing_stance=swing_stance)
     rng = np.random.default_rng(3)
     shape = (2, 5, 6)
     x, y = rng.uniform(-1, 1, (2, *shape))
@@ -207,16 +207,16 @@ def test_batches_repeat_single_robots_to_the_last_bit(swing_stance: bool) -> Non
 
 
 def test_arguments_are_left_alone() -> None:
-    x, y = start_state(HopfConfig())
+    x, y = start_state(HopfConfig.of_article())
     arguments = (x, y, MU.copy(), FREQUENCY.copy())
     copies = [argument.copy() for argument in arguments]
-    step(*arguments, HopfConfig())
+    step(*arguments, HopfConfig.of_article())
     for argument, copy in zip(arguments, copies, strict=True):
         np.testing.assert_array_equal(argument, copy)
 
 
 def test_step_is_the_end_of_the_trajectory() -> None:
-    config = HopfConfig()
+    config = HopfConfig.of_article()
     x, y = start_state(config)
     xs, ys = trajectory(x, y, MU, FREQUENCY, config)
     end = step(x, y, MU, FREQUENCY, config)
@@ -225,7 +225,7 @@ def test_step_is_the_end_of_the_trajectory() -> None:
 
 def test_derivative_matches_the_equations_leg_by_leg() -> None:
     # A tiny sub-step of the network against the sums as they are written in the module.
-    config = HopfConfig(gait='tetrapod', alpha=7.0, beta=13.0, coupling=0.9)
+    config = HopfConfig.of_article(gait='tetrapod', alpha=7.0, beta=13.0, coupling=0.9)
     rng = np.random.default_rng(5)
     x, y = rng.uniform(-1, 1, (2, 6))
     mu, omega = rng.uniform(0.5, 1.5, 6), rng.uniform(5, 15, 6)
@@ -248,4 +248,4 @@ def test_derivative_matches_the_equations_leg_by_leg() -> None:
 
 def test_unknown_gait_is_named() -> None:
     with pytest.raises(ValueError, match="gait 'gallop': expected one of tripod, tetrapod, wave"):
-        HopfConfig(gait='gallop')
+        HopfConfig.of_article(gait='gallop')

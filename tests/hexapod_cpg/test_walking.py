@@ -6,24 +6,27 @@
 import numpy as np
 import pytest
 from hexapod_cpg.cpg import Cpg
-from hexapod_cpg.mapping import ACTION_SIZE, READINGS, command_from_action
+from hexapod_cpg.mapping import ACTION_SIZE, READINGS, ActionRanges, command_from_action
+from hexapod_cpg.oscillator import HopfConfig
 from hexapod_sim.sensors import read
 from hexapod_sim.task import LineTask, TaskConfig
 
 from hexapod_sim import robot
 
+RANGES = ActionRanges.of_article()
+
 PERIOD_S = robot.CONTROL_PERIOD_NS * 1e-9
 HIP_GAIN = READINGS['D1'].index('hip_gain')
-ON_THE_LINE = TaskConfig(start_offset=0.0, max_offset=10.0)
+ON_THE_LINE = TaskConfig.of_article(start_offset=0.0, max_offset=10.0)
 
 
 def walk(actions: np.ndarray, reading: str = 'D1') -> np.ndarray:
     """Poses (periods, 6) under actions (periods, 30); every period must be without a fall."""
-    task, cpg = LineTask(ON_THE_LINE), Cpg()
+    task, cpg = LineTask(ON_THE_LINE), Cpg(HopfConfig.of_article())
     task.reset(0)
     poses = []
     for action in actions:
-        outcome = task.advance(cpg.advance(command_from_action(action, reading)))
+        outcome = task.advance(cpg.advance(command_from_action(action, reading, RANGES)))
         assert not outcome.terminated, outcome.cause
         poses.append(task.simulation.pose())
     return np.array(poses)
@@ -64,7 +67,7 @@ def test_constant_gait_is_level(constant_gait: np.ndarray) -> None:
 
 def test_walking_height_is_that_of_the_task(constant_gait: np.ndarray) -> None:
     height = constant_gait[80:, 2]
-    assert height.mean() == pytest.approx(TaskConfig().walking_height, abs=0.001)
+    assert height.mean() == pytest.approx(TaskConfig.of_article().walking_height, abs=0.001)
     assert np.ptp(height) < 0.02
 
 
@@ -96,9 +99,9 @@ def test_no_action_in_the_ranges_topples_the_robot(reading: str, seed: int) -> N
 
 
 def test_feet_of_the_swinging_tripod_leave_the_floor() -> None:
-    task, cpg = LineTask(ON_THE_LINE), Cpg()
+    task, cpg = LineTask(ON_THE_LINE), Cpg(HopfConfig.of_article())
     task.reset(0)
-    gait = command_from_action(np.zeros(ACTION_SIZE))
+    gait = command_from_action(np.zeros(ACTION_SIZE), 'D1', RANGES)
     touching = {'swing': [], 'stance': []}
     for period in range(200):
         task.advance(cpg.advance(gait))

@@ -31,7 +31,7 @@ class Config:
 
 
 def test_scalar_fields_become_parameters_with_their_docs_and_units() -> None:
-    speed, legs, gait = config_table(Config, 'walk')
+    speed, legs, gait = config_table(Config(), 'walk')
     assert (speed.name, speed.default, speed.description, speed.unit) == (
         'walk.speed',
         0.5,
@@ -129,7 +129,8 @@ def test_limits_hold_for_whole_numbers_too(started) -> None:
 @pytest.mark.graph
 def test_a_configuration_takes_whole_numbers(started) -> None:
     node = started()
-    config = ConfigParameters(node, Config, 'walk')
+    config = ConfigParameters(node, Config(speed=0.25), 'walk')
+    assert config.get().speed == 0.25
     assert set_one(node, 'walk.speed', 2) == (True, '')
     assert config.get().speed == 2.0
     done, reason = set_one(node, 'walk.speed', 2.5)

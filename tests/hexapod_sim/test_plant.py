@@ -17,7 +17,7 @@ STANDING = np.tile(robot.NEUTRAL_POSE, (robot.SUBSTEPS, 1))
 
 @pytest.fixture
 def task() -> LineTask:
-    return LineTask()
+    return LineTask(TaskConfig.of_article())
 
 
 def test_each_trajectory_is_played_once_and_its_last_target_is_held(task: LineTask) -> None:
@@ -25,7 +25,7 @@ def test_each_trajectory_is_played_once_and_its_last_target_is_held(task: LineTa
     simulate = task.simulation.advance
     task.simulation.advance = lambda targets: (played.append(targets), simulate(targets))[1]
     plant = Plant(task)
-    plant.reset(1, TaskConfig())
+    plant.reset(1, TaskConfig.of_article())
     way = STANDING + np.linspace(0.0, 0.1, robot.SUBSTEPS)[:, None]
     plant.advance()
     plant.play(way)
@@ -38,9 +38,9 @@ def test_each_trajectory_is_played_once_and_its_last_target_is_held(task: LineTa
 
 
 def test_it_equals_the_task_as_long_as_both_go_on(task: LineTask) -> None:
-    alone = LineTask()
+    alone = LineTask(TaskConfig.of_article())
     plant = Plant(task)
-    assert plant.reset(4, TaskConfig()) == alone.reset(4)
+    assert plant.reset(4, TaskConfig.of_article()) == alone.reset(4)
     for step in range(20):
         targets = STANDING + 0.005 * step
         plant.play(targets)
@@ -49,7 +49,7 @@ def test_it_equals_the_task_as_long_as_both_go_on(task: LineTask) -> None:
 
 def test_no_episode_ends_by_time(task: LineTask) -> None:
     plant = Plant(task)
-    plant.reset(1, TaskConfig(time_limit_steps=3))
+    plant.reset(1, TaskConfig.of_article(time_limit_steps=3))
     outcomes = [plant.advance() for _ in range(6)]
     assert [outcome.step for outcome in outcomes] == [1, 2, 3, 4, 5, 6]
     assert not any(outcome.truncated for outcome in outcomes)
@@ -57,13 +57,13 @@ def test_no_episode_ends_by_time(task: LineTask) -> None:
 
 def test_physics_goes_on_after_a_failure(task: LineTask) -> None:
     plant = Plant(task)
-    plant.reset(1, TaskConfig(max_offset=0.001))
+    plant.reset(1, TaskConfig.of_article(max_offset=0.001))
     failed = plant.advance()
     assert (failed.terminated, failed.cause) == (True, 'strayed')
     before = task.simulation.data.time
     assert plant.advance() == failed
     assert task.simulation.data.time == pytest.approx(before + 0.025)
-    assert plant.reset(1, TaskConfig()).step == 0
+    assert plant.reset(1, TaskConfig.of_article()).step == 0
     assert not plant.advance().terminated
 
 

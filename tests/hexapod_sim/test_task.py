@@ -11,6 +11,7 @@ import mujoco
 import numpy as np
 import pytest
 from hexapod_sim.sensors import READINGS, read
+from hexapod_sim.sums import ordered_sum
 from hexapod_sim.task import (
     TERM_NAMES,
     LineTask,
@@ -19,6 +20,7 @@ from hexapod_sim.task import (
     episode_seed,
     failure_cause,
     height_penalty,
+    judge,
     line_at,
     orientation_penalty,
     velocity_term,
@@ -27,12 +29,13 @@ from hexapod_sim.task import (
 from hexapod_sim import robot
 
 NEUTRAL = np.tile(robot.NEUTRAL_POSE, (robot.SUBSTEPS, 1))
-CONFIG = TaskConfig()
+CONFIG = TaskConfig.of_article()
+PERIOD_S = robot.CONTROL_PERIOD_NS * 1e-9
 
 
 @pytest.fixture
 def task() -> LineTask:
-    return LineTask()
+    return LineTask(TaskConfig.of_article())
 
 
 def shake(seed: int, periods: int) -> np.ndarray:
@@ -93,19 +96,43 @@ def test_height_penalty() -> None:
     assert height_penalty(0.0, CONFIG) == 2.0
 
 
-def test_every_reasonable_step_is_positive() -> None:
+def rewards(count: int, velocity: tuple[float, float], offset: float) -> np.ndarray:
+    """Rewards of single steps at any attitude and height, by the shipped numbers.
+
+    Args:
+        count: Steps.
+        velocity: Least and greatest speed along the line, m/s.
+        offset: Largest distance from the line, m.
+    """
     rng = np.random.default_rng(0)
-    for _ in range(2000):
-        penalties = CONFIG.orientation_weight * orientation_penalty(
-            *rng.uniform(-math.pi, math.pi, 3), CONFIG
-        ) + CONFIG.height_weight * height_penalty(rng.uniform(0, 0.3), CONFIG)
-        reward = (
-            CONFIG.velocity_weight * velocity_term(rng.uniform(0, 1), CONFIG)
-            + CONFIG.closeness_weight * closeness_term(rng.uniform(-0.999, 0.999))
-            - penalties
-            + CONFIG.alive_reward
-        )
-        assert reward > 0
+    found = []
+    for _ in range(count):
+        x, y = PERIOD_S * rng.uniform(*velocity), rng.uniform(-offset, offset)
+        pose = (x, y, rng.uniform(0.0, 0.3), *rng.uniform(-math.pi, math.pi, 3))
+        found.append(judge(1, pose, 0.0, y, CONFIG).reward)
+    return np.array(found)
+
+
+def test_every_step_near_the_line_is_positive() -> None:
+    """At 0.75 m closeness earns 4 (1 - 0.75) = 1; with the constant 1 it pays the penalties.
+
+    Each of the two is clipped at 2 and weighs 0.5.
+    """
+    assert rewards(2000, (0.0, 1.0), 0.75).min() > 0.0
+    flipped, upright = (0.0, math.pi, 0.0), (0.0, 0.0, 0.0)
+    worst = judge(1, (0.0, 0.75, 0.0, *flipped), 0.0, 0.75, CONFIG)
+    assert worst.reward == pytest.approx(0.0, abs=1e-12)
+    assert judge(1, (0.0, 1.2, 0.134, *upright), 0.0, 1.2, CONFIG).reward > 0.0
+
+
+def test_farther_away_a_step_may_cost() -> None:
+    """Up to 1 m from the line 2.9 % of such steps do; at worst -1 = 4 (1 - 1) + 1 - 1 - 1."""
+    found = rewards(20_000, (0.0, 1.0), 1.0)
+    assert np.mean(found < 0.0) == pytest.approx(0.029, abs=0.005)
+    assert -1.0 <= found.min() < -0.9
+    # Backwards and about to stray: -1 + 4 (1 - 2) - 1 - 1 + 1.
+    pose = (-PERIOD_S, 2.0, 0.0, 0.0, math.pi, 0.0)
+    assert judge(1, pose, 0.0, 2.0, CONFIG).reward == pytest.approx(-6.0)
 
 
 def test_reset_earns_nothing_and_starts_beside_the_line(task: LineTask) -> None:
@@ -147,7 +174,7 @@ def test_line_offset_is_positive_to_the_left(task: LineTask) -> None:
 
 
 def test_reset_puts_the_line_back() -> None:
-    task = LineTask(TaskConfig(line_y=0.25, start_offset=0.0))
+    task = LineTask(TaskConfig.of_article(line_y=0.25, start_offset=0.0))
     task.reset(0)
     task.line_y = -1.0
     task.reset(0)
@@ -162,16 +189,16 @@ def test_reset_puts_the_line_back() -> None:
 )
 def test_a_jumping_line_stands_on_either_side_in_turn(step: int, line: float) -> None:
     # 1 s are 40 control periods of 25 ms; 0.25 - 0.5 is on the right.
-    config = TaskConfig(line_y=0.25, line_jump=0.5, line_period=1.0)
+    config = TaskConfig.of_article(line_y=0.25, line_jump=0.5, line_period=1.0)
     assert line_at(step, config) == line
 
 
 def test_without_a_period_the_line_stays() -> None:
-    assert line_at(10**6, TaskConfig(line_y=0.25, line_jump=0.5)) == 0.25
+    assert line_at(10**6, TaskConfig.of_article(line_y=0.25, line_jump=0.5)) == 0.25
 
 
 def test_offset_and_reward_see_the_jump_in_the_same_period() -> None:
-    config = TaskConfig(start_offset=0.0, line_jump=0.5, line_period=0.05)
+    config = TaskConfig.of_article(start_offset=0.0, line_jump=0.5, line_period=0.05)
     task = LineTask(config)
     task.reset(0)
     assert task.line_offset == 0.0
@@ -180,7 +207,7 @@ def test_offset_and_reward_see_the_jump_in_the_same_period() -> None:
         outcome = task.advance(NEUTRAL)
         y = float(task.simulation.position[1])
         assert task.line_offset == y - task.line_y
-        assert outcome.terms['closeness'] == closeness_term(task.line_offset)
+        assert outcome.terms['closeness'] == 4.0 * closeness_term(task.line_offset)
         lines.append(task.line_y)
     assert lines == [-0.5, 0.5, 0.5, -0.5]
     assert task.simulation.data.mocap_pos[0, 1] == -0.5
@@ -189,7 +216,7 @@ def test_offset_and_reward_see_the_jump_in_the_same_period() -> None:
 @pytest.mark.parametrize('period', [-1.0, 0.01, math.nan])
 def test_a_line_faster_than_the_control_is_refused(period: float) -> None:
     with pytest.raises(ValueError, match='expected 0, or at least the control period'):
-        TaskConfig(line_period=period)
+        TaskConfig.of_article(line_period=period)
 
 
 def test_terms_sum_to_the_reward_and_match_the_pose(task: LineTask) -> None:
@@ -199,13 +226,13 @@ def test_terms_sum_to_the_reward_and_match_the_pose(task: LineTask) -> None:
         outcome = task.advance(targets)
         x, y, height, roll, pitch, yaw = task.simulation.pose()
         assert outcome.step == step
-        assert outcome.reward == sum(outcome.terms.values())
+        assert outcome.reward == ordered_sum(outcome.terms.values())
         assert outcome.terms == {
             'velocity': velocity_term((x - x_before) / 0.025, CONFIG),
-            'closeness': closeness_term(y),
+            'closeness': 4.0 * closeness_term(y),
             'orientation': -0.5 * orientation_penalty(roll, pitch, yaw, CONFIG),
             'height': -0.5 * height_penalty(height, CONFIG),
-            'alive': 2.0,
+            'alive': 1.0,
         }
         x_before = x
 
@@ -213,7 +240,7 @@ def test_terms_sum_to_the_reward_and_match_the_pose(task: LineTask) -> None:
 def test_weights_scale_their_terms() -> None:
     names = [f'{term}_weight' for term in TERM_NAMES[:-1]] + ['alive_reward']
     weights = dict(zip(names, (3.0, 5.0, 7.0, 11.0, 13.0), strict=True))
-    plain, weighted = LineTask(), LineTask(TaskConfig(**weights))
+    plain, weighted = LineTask(TaskConfig.of_article()), LineTask(TaskConfig.of_article(**weights))
     plain.reset(2)
     weighted.reset(2)
     targets = shake(2, 1)[0]
@@ -224,7 +251,7 @@ def test_weights_scale_their_terms() -> None:
 
 
 def test_standing_still_lasts_to_the_time_limit() -> None:
-    task = LineTask(TaskConfig(time_limit_steps=20))
+    task = LineTask(TaskConfig.of_article(time_limit_steps=20))
     task.reset(0)
     outcomes = [task.advance(NEUTRAL) for _ in range(20)]
     assert not any(outcome.truncated or outcome.terminated for outcome in outcomes[:-1])
@@ -241,7 +268,7 @@ def test_default_time_limit_is_fifteen_seconds() -> None:
 
 def test_advance_before_reset_is_refused() -> None:
     with pytest.raises(RuntimeError, match='no episode runs'):
-        LineTask().advance(NEUTRAL)
+        LineTask(TaskConfig.of_article()).advance(NEUTRAL)
 
 
 @pytest.mark.parametrize(
@@ -289,7 +316,7 @@ def test_folding_the_legs_up_collapses_the_robot(task: LineTask) -> None:
 
 
 def test_failure_at_the_time_limit_is_a_failure() -> None:
-    task = LineTask(TaskConfig(time_limit_steps=1, max_offset=0.0))
+    task = LineTask(TaskConfig.of_article(time_limit_steps=1, max_offset=0.0))
     task.reset(0)
     outcome = task.advance(NEUTRAL)
     assert (outcome.terminated, outcome.truncated, outcome.cause) == (True, False, 'strayed')
@@ -321,7 +348,7 @@ def test_bad_targets_leave_the_episode_untouched(task: LineTask) -> None:
 
 
 def test_same_seed_and_targets_give_the_same_bits_after_a_dirty_reset() -> None:
-    fresh, used = LineTask(), LineTask()
+    fresh, used = LineTask(TaskConfig.of_article()), LineTask(TaskConfig.of_article())
     used.reset(9)
     for targets in shake(9, 30):
         used.advance(targets)

@@ -13,10 +13,13 @@ import numpy as np
 import pytest
 import yaml
 from hexapod_cpg.cpg import Cpg
-from hexapod_cpg.mapping import command_from_action
+from hexapod_cpg.mapping import ActionRanges, command_from_action
+from hexapod_cpg.oscillator import HopfConfig
 from hexapod_doe.bags.bag_writer import BagWriter
 from hexapod_doe.bags.rosbag2 import Topic
 from hexapod_sim.task import LineTask, Outcome, TaskConfig
+
+RANGES = ActionRanges.of_article()
 
 PERIOD_NS = 25_000_000
 TOPICS = {
@@ -30,12 +33,12 @@ def play(
     config: TaskConfig, seed: int, look: Callable[[LineTask, Outcome], None]
 ) -> list[Outcome]:
     """Walk straight until the episode ends; show each sample, and return the outcomes."""
-    task, cpg = LineTask(config), Cpg()
+    task, cpg = LineTask(config), Cpg(HopfConfig.of_article())
     outcome = task.reset(seed)
     look(task, outcome)
     outcomes = []
     while not (outcome.terminated or outcome.truncated):
-        outcome = task.advance(cpg.advance(command_from_action(np.zeros(30))))
+        outcome = task.advance(cpg.advance(command_from_action(np.zeros(30), 'D1', RANGES)))
         look(task, outcome)
         outcomes.append(outcome)
     return outcomes

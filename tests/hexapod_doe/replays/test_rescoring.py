@@ -13,12 +13,13 @@ from hexapod_doe.bags.run_record import read_run, read_topic
 from hexapod_doe.errors import BagError
 from hexapod_doe.replays.rescoring import recorded_config, rescore
 from hexapod_doe.rescore import main
+from hexapod_sim.sums import ordered_sum
 from hexapod_sim.task import DIVERGED, TaskConfig
 
 from hexapod_doe import shadow
 
 SAMPLE = Path(__file__).resolve().parents[3] / 'bags' / 'sample'
-SHORT = TaskConfig(time_limit_steps=40)
+SHORT = TaskConfig.of_article(time_limit_steps=40)
 # Values that change every term.
 OTHER = replace(
     SHORT,
@@ -70,9 +71,10 @@ def test_a_line_that_jumps_shifts_the_distances(record):
     # At -0.5 m, and in turn every 20 steps, 0.5 s, at +0.5 m; recorded with the line at 0 m.
     offsets = [message.offset for _, message in read_topic(bag, 'line_offset')]
     lines = [-0.5] * 20 + [0.5] * 20 + [-0.5]
-    expected = [1.0 - abs(o - line) for o, line in zip(offsets, lines, strict=True)]
+    weight = SHORT.closeness_weight
+    expected = [weight * (1.0 - abs(o - line)) for o, line in zip(offsets, lines, strict=True)]
     found = [outcome.terms['closeness'] for outcome in scored.outcomes]
-    assert found == pytest.approx(expected[1:], abs=1e-15)
+    assert found == pytest.approx(expected[1:], abs=1e-14)
 
 
 def test_limits_end_an_episode_earlier_and_a_recording_cannot_be_longer(record):
@@ -83,7 +85,7 @@ def test_limits_end_an_episode_earlier_and_a_recording_cannot_be_longer(record):
     assert (len(strayed.outcomes), strayed.cause) == (1, 'strayed')
     (longer,) = scores(bag, replace(SHORT, time_limit_steps=100))
     assert (len(longer.outcomes), longer.cause) == (40, '')
-    assert longer.episode_return == sum(outcome.reward for outcome in played)
+    assert longer.episode_return == ordered_sum(outcome.reward for outcome in played)
 
 
 def test_an_episode_whose_physics_was_lost_stays_so(record):
@@ -133,7 +135,7 @@ def test_command_line(record, tmp_path, capsys):
     assert row['run_id'] == 'walk'
     assert row['terms']['alive'] == 20.0
     assert row['recorded_return'] == sum(outcome.reward for outcome in played)
-    assert row['return'] == pytest.approx(row['recorded_return'] - 1.5 * 40)
+    assert row['return'] == pytest.approx(row['recorded_return'] - (SHORT.alive_reward - 0.5) * 40)
 
 
 def test_an_unknown_key_of_the_reward_file_is_named(tmp_path, capsys):

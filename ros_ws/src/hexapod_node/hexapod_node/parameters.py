@@ -127,11 +127,18 @@ class ConfigParameters(Generic[Config]):
     Values that the dataclass refuses with a ValueError are refused with that text.
     """
 
-    def __init__(self, node: Node, config: type[Config], prefix: str) -> None:
+    def __init__(self, node: Node, default: Config, prefix: str) -> None:
+        """Declare the parameters.
+
+        Args:
+            node: whose they are.
+            default: what they are where nothing else is said.
+            prefix: of their names.
+        """
         self._node = node
-        self._config = config
+        self._config = type(default)
         self._prefix = prefix
-        declare(node, config_table(config, prefix))
+        declare(node, config_table(default, prefix))
         node.add_on_set_parameters_callback(self._check)
 
     def get(self) -> Config:
@@ -152,21 +159,23 @@ class ConfigParameters(Generic[Config]):
         return SetParametersResult(successful=True)
 
 
-def config_table(config: type, prefix: str) -> tuple[Parameter, ...]:
-    """Return the parameters that a configuration's scalar fields make.
+def config_table(default: Any, prefix: str) -> tuple[Parameter, ...]:
+    """Return the parameters that the scalar fields of a configuration make, with its values.
 
     A field's docstring is the description; where it ends in brackets, they hold the unit. An
     `Interval` in its annotation is the range.
     """
+    config = type(default)
     docs = _field_docs(config)
     hints = get_type_hints(config, include_extras=True)
     table = []
     for field in fields(config):
-        if isinstance(field.default, Value):
+        value = getattr(default, field.name)
+        if isinstance(value, Value):
             text, unit = _split_unit(docs.get(field.name, ''))
             name = f'{prefix}.{field.name}'
             limits = _limits(hints[field.name])
-            table.append(Parameter(name, field.default, text, unit, limits, read_only=False))
+            table.append(Parameter(name, value, text, unit, limits, read_only=False))
     return tuple(table)
 
 
