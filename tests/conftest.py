@@ -89,9 +89,10 @@ def own_domain() -> Iterator[int]:
 def told() -> Callable[[str], list[str]]:
     """Yield what splits an output into the lines that a node itself has written.
 
-    Fast DDS complains on the terminal about shared memory that killed processes left behind; it
-    then goes on without.
+    Fast DDS complains on the terminal about shared memory that killed processes left behind, and
+    goes on without; a worker tells how much of it was freed.
     """
+    others = ('RTPS_TRANSPORT_SHM', 'shared memory that killed nodes had left')
     return lambda output: [
-        line for line in output.strip().splitlines() if 'RTPS_TRANSPORT_SHM' not in line
+        line for line in output.strip().splitlines() if not any(text in line for text in others)
     ]

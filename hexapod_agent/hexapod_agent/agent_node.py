@@ -15,6 +15,7 @@ from hexapod_node.diagnostics import Diagnostics, Health
 from hexapod_node.intra_process import LockStepPublisher
 from hexapod_node.parameters import Parameter, declare
 from hexapod_node.qos import LOCK_STEP
+from hexapod_node.shared_memory import free_abandoned
 from hexapod_node.spin import run
 from rclpy.action import CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
@@ -145,4 +146,5 @@ def trained(goal: TrainRun.Goal) -> tuple[ObservationSpec, AgentConfig, Agent]:
 
 def main(args: Sequence[str] | None = None) -> None:
     """Run the node until a signal comes."""
+    free_abandoned()
     run(AgentNode, args)

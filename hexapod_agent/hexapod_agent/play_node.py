@@ -71,6 +71,11 @@ class PlayNode(Node):
 
     def _goal(self) -> TrainRun.Goal:
         value = {entry.name: self._value(entry.name) for entry in PARAMETERS}
+        if value['bag'] and Path(_absolute(value['bag'])).exists():
+            raise ValueError(
+                f"bag '{value['bag']}' is there already, expected a new folder; give another one "
+                'with bag:=FOLDER, or move it away'
+            )
         return TrainRun.Goal(
             run_id=Path(value['bag']).name or 'play',
             checkpoint=_absolute(self._checkpoint()),

@@ -14,6 +14,7 @@ from hexapod_cpg.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_node.conditions import until_true
 from hexapod_node.coroutines import start
+from hexapod_node.shared_memory import free_abandoned
 from hexapod_node.spin import run
 from hexapod_sim.sim_node import SimNode
 from rclpy.action import ActionClient
@@ -82,6 +83,7 @@ def train_row(row: Row, settings: RunSettings, stall_s: float) -> None:
     """
     # Nodes of one process find each other all the same.
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'OFF'
+    free_abandoned()
     namespace = ['--ros-args', '-r', f'__ns:=/{row.run_id}']
     run(partial(_make_nodes, row, settings, stall_s), namespace)
 

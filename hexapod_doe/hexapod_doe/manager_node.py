@@ -19,6 +19,7 @@ from hexapod_node.coroutines import sleep, start
 from hexapod_node.diagnostics import Diagnostics, Health
 from hexapod_node.parameters import Parameter, declare
 from hexapod_node.qos import LATCHED
+from hexapod_node.shared_memory import free_abandoned
 from hexapod_node.spin import run
 from hexapod_node.timers import call_every
 from rclpy.action import ActionClient, get_action_names_and_types
@@ -255,4 +256,5 @@ class ManagerNode(Node):
 
 def main(args: Sequence[str] | None = None) -> None:
     """Run the campaign to its end, or until a signal comes."""
+    free_abandoned()
     run(ManagerNode, args)

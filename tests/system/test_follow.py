@@ -59,6 +59,16 @@ def test_the_shipped_agent_follows_a_line_that_jumps_by_a_metre(shell) -> None:
     assert first.offset_after < 0.1
 
 
+def test_a_second_launch_names_what_to_give(ready) -> None:
+    (ready.directory / 'bags' / 'follow').mkdir(parents=True)
+    ended = ready.run(f'{LAUNCH} checkpoint:=agent.pt')
+    output = ended.stdout + ended.stderr
+    assert ended.returncode != 0
+    assert "bag 'bags/follow' is there already" in output
+    assert 'bag:=' in output
+    assert 'Traceback' not in output
+
+
 def test_a_missing_checkpoint_ends_the_launch(ready) -> None:
     ended = ready.run(f'{LAUNCH} checkpoint:=none.pt bag:=bag')
     assert ended.returncode != 0

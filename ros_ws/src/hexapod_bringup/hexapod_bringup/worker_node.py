@@ -7,21 +7,28 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from hexapod_agent.agent_node import AgentNode
-from hexapod_cpg.cpg_node import CpgNode
-from hexapod_doe.recorder_node import RecorderNode
 from hexapod_node.lifeline import follow
+from hexapod_node.shared_memory import free_abandoned
 from hexapod_node.spin import run
-from hexapod_sim.sim_node import SimNode
 from rclpy.node import Node
 
 
 def make_worker() -> list[Node]:
-    """Make the nodes of a worker; they are wired by topics, as separate processes are."""
+    """Make the nodes of a worker; they are wired by topics, as separate processes are.
+
+    Their libraries take seconds to load, and only from here on does a signal end the process in
+    order.
+    """
+    from hexapod_agent.agent_node import AgentNode
+    from hexapod_cpg.cpg_node import CpgNode
+    from hexapod_doe.recorder_node import RecorderNode
+    from hexapod_sim.sim_node import SimNode
+
     return [SimNode(), CpgNode(), RecorderNode(), AgentNode()]
 
 
 def main(args: Sequence[str] | None = None) -> None:
     """Run the worker until a signal comes, or the manager that started it ends."""
     follow()
+    free_abandoned()
     run(make_worker, args)

@@ -10,9 +10,11 @@ from collections.abc import Sequence
 import rclpy
 
 from hexapod_node.environment import require_log_directory
+from hexapod_node.lifeline import follow_launch
 
 
 def begin(args: Sequence[str] | None = None) -> None:
     """Initialise rclpy with ROS arguments, those of the command line when None."""
+    follow_launch()
     require_log_directory()
     rclpy.init(args=list(args) if args is not None else None)

@@ -13,6 +13,8 @@ import os
 import tempfile
 from pathlib import Path
 
+from hexapod_node.shared_memory import free_abandoned
+
 from ros2_mini.errors import CommandError
 from ros2_mini.launch.arguments import declarations, parse_launch_arguments
 from ros2_mini.launch.expand import expand_launch_file
@@ -83,6 +85,7 @@ def _show_arguments(path: Path) -> None:
 
 
 def _run(plan: Plan, undeclared: list[str]) -> int:
+    free_abandoned()
     directory = make_log_directory()
     with LaunchLog(directory) as log:
         log.say('INFO', 'launch', f'All log files can be found below {directory}')
