@@ -130,9 +130,12 @@ def _changes(path: str | Path) -> Mapping[str, Any]:
 def _read(path: Any) -> Mapping[str, Any]:
     """Parse a YAML file; an empty one changes nothing."""
     try:
-        return yaml.safe_load(path.read_text(encoding='utf-8')) or {}
-    except yaml.YAMLError as error:
+        changes = yaml.safe_load(path.read_text(encoding='utf-8')) or {}
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise ConfigError(f'{path}: not YAML: {error}') from error
+    if not isinstance(changes, Mapping):
+        raise ConfigError(f'{path}: expected sections with keys, as article.yaml has them')
+    return changes
 
 
 def _check_keys(cls: type, mapping: Any, source: str, prefix: str) -> None:

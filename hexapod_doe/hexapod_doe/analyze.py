@@ -9,7 +9,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import replace
 
-from hexapod_sim.command_line import options_of
+from hexapod_sim.command_line import one_line, options_of
 
 from hexapod_doe.analysis.analysis import analyse
 from hexapod_doe.analysis.analysis_json import write_json
@@ -44,7 +44,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         write_json(analysis, args.out / 'analysis.json')
         page = write_report(analysis, args.out)
     except (AnalysisError, BagError, PlanError, OSError) as error:
-        print(f'analyze: {" ".join(str(error).split())}', file=sys.stderr)
+        print(f'analyze: {one_line(error)}', file=sys.stderr)
         return 2
     print(summary(analysis))
     print(f'report: {page}')

@@ -8,7 +8,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
-from hexapod_sim.command_line import CommandLine, folder
+from hexapod_sim.command_line import CommandLine, folder, one_line
 from rich.console import Console
 
 from hexapod_doe.campaigns.campaign import PLAN_FILE
@@ -31,9 +31,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     args = parser.parse_args(arguments)
     try:
         progress = read_progress(args.directory)
-    except (PlanError, FileNotFoundError) as error:
+    except (PlanError, OSError) as error:
         if not args.quiet:
-            print(f'campaign_status: {error}', file=sys.stderr)
+            print(f'campaign_status: {one_line(error)}', file=sys.stderr)
         return 2
     if args.page:
         write_page(progress, args.directory)

@@ -15,6 +15,7 @@ from hexapod_agent.contract.messages import listen_and_check
 from hexapod_agent.contract.report import SensorReport
 from hexapod_node.coroutines import start
 from hexapod_node.spin import run
+from hexapod_sim.command_line import one_line
 from rclpy.node import Node
 from rclpy.task import Future
 
@@ -79,7 +80,7 @@ def _check_bag(bag: Path, options: CheckOptions) -> int:
         report = check_sensors(options.spec, evidence, options.limits, options.reliable)
         return tell(report, options)
     except (BagError, OSError) as error:
-        print(f'check_sensors: {error}', file=sys.stderr)
+        print(f'check_sensors: {one_line(error)}', file=sys.stderr)
         return 2
 
 

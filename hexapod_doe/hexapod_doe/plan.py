@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
+from hexapod_sim.command_line import one_line
 
 from hexapod_doe.campaigns.campaign import PLAN_FILE
 from hexapod_doe.campaigns.next_steps import CONFIRM_FOLDER, after_confirm
@@ -43,7 +44,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     try:
         _RUN[args.command](args)
     except (ValueError, OSError) as error:
-        print(f'plan: {error}', file=sys.stderr)
+        print(f'plan: {one_line(error)}', file=sys.stderr)
         sys.exit(2)
 
 

@@ -12,7 +12,7 @@ from statistics import mean
 from typing import Any
 
 from hexapod_agent.config import ConfigError
-from hexapod_sim.command_line import CommandLine, file, output_file, path
+from hexapod_sim.command_line import CommandLine, file, one_line, output_file, path
 from hexapod_sim.task import TERM_NAMES
 from rich.console import Console
 from rich.table import Table
@@ -29,8 +29,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     try:
         rows = [row for bag in _bags(options.bag) for row in _rescored(bag, options.task)]
-    except (BagError, ConfigError) as error:
-        parser.error(str(error))
+    except (BagError, ConfigError, OSError) as error:
+        parser.error(one_line(error))
     console = Console()
     console.print(_episode_table(rows))
     scored = [row for _, row in rows]

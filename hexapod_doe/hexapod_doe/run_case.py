@@ -15,7 +15,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from hexapod_sim.command_line import CommandLine, file, folder, number, whole
+from hexapod_sim.command_line import CommandLine, file, folder, number, one_line, whole
 
 from hexapod_doe.campaigns.campaign import Row, RunSettings, read_rows
 from hexapod_doe.campaigns.campaign_lock import campaign_lock, row_lock
@@ -34,7 +34,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         settings = _settings(args)
         state = row.bag_state(settings.expected())
     except (ValueError, OSError) as error:
-        print(f'run_case: {error}', file=sys.stderr)
+        print(f'run_case: {one_line(error)}', file=sys.stderr)
         return 2
     if state.other:
         print(
@@ -51,7 +51,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             keep_config(plan.resolve().parent, args.hyperparameters)
             return _train(row, settings, args.stall)
     except (ValueError, OSError) as error:
-        print(f'run_case: {error}', file=sys.stderr)
+        print(f'run_case: {one_line(error)}', file=sys.stderr)
         return 1
 
 

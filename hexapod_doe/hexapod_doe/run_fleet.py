@@ -22,7 +22,7 @@ from hexapod_agent.fleet.learners import Learners, SeparateLearners
 from hexapod_agent.fleet.robots import Robots
 from hexapod_agent.fleet.stacked import StackedLearners
 from hexapod_agent.observation import ObservationSpec
-from hexapod_sim.command_line import CommandLine, file, folder, whole
+from hexapod_sim.command_line import CommandLine, file, folder, one_line, whole
 
 from hexapod_doe.campaigns.campaign import Campaign, shared_settings
 from hexapod_doe.campaigns.campaign_lock import campaign_lock
@@ -41,7 +41,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         with _interruptible():
             return _run(args)
     except (ValueError, OSError) as error:  # of the plan, its folder, or the configuration
-        print(f'run_fleet: {error}', file=sys.stderr)
+        print(f'run_fleet: {one_line(error)}', file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print('run_fleet: interrupted; the same command goes on', file=sys.stderr)

@@ -13,7 +13,7 @@ from dataclasses import asdict
 
 from hexapod_agent.checkpoint import CheckpointError, load
 from hexapod_agent.policies import trained_policy
-from hexapod_sim.command_line import CommandLine, file, output_file, path, whole
+from hexapod_sim.command_line import CommandLine, file, one_line, output_file, path, whole
 from rich.console import Console
 from rich.table import Table
 
@@ -29,8 +29,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     try:
         found = _compare(options)
-    except (BagError, CheckpointError) as error:
-        parser.error(str(error))
+    except (BagError, CheckpointError, OSError) as error:
+        parser.error(one_line(error))
     console = Console()
     for comparison in found:
         console.print(_table(comparison))

@@ -46,6 +46,13 @@ def suit_any_terminal() -> None:
             stream.reconfigure(errors='backslashreplace')
 
 
+def one_line(error: Exception) -> str:
+    """Return what an error says in one line; of the system's with the file that it is about."""
+    if isinstance(error, OSError) and error.filename is not None and error.strerror:
+        return f'{error.filename}: {error.strerror[0].lower()}{error.strerror[1:]}'
+    return ' '.join(str(error).split())
+
+
 def number(
     ge: float | None = None, le: float | None = None, *, gt: float | None = None,
     lt: float | None = None,

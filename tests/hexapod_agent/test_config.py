@@ -83,7 +83,7 @@ def test_mapping_round_trip():
         ('critic: {merge: multiply}', "critic.merge is 'multiply', expected.*'add' or 'append'"),
         ('cpg: {hopf: {gait: gallop}}', 'gallop.*expected'),
         ('ddpg: 3', 'ddpg. is 3, expected keys'),
-        ('- 1', 'the file is .1., expected keys'),
+        ('- 1', 'expected sections with keys'),
         ('a: [', 'not YAML'),
     ],
 )

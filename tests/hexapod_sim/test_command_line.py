@@ -23,6 +23,7 @@ from hexapod_sim.command_line import (
     file,
     folder,
     number,
+    one_line,
     options_of,
     path,
     range_fault,
@@ -144,3 +145,10 @@ def test_every_command_line_is_such_a_one() -> None:
     assert len(sources) > 100
     made = [source.name for source in sources if ' argparse.ArgumentParser(' in source.read_text()]
     assert made == []
+
+
+def test_an_error_of_the_system_names_its_file(tmp_path: Path) -> None:
+    with pytest.raises(OSError, match='directory') as caught:
+        (tmp_path / 'no' / 'file').write_text('')
+    assert one_line(caught.value) == f'{tmp_path / "no" / "file"}: no such file or directory'
+    assert one_line(ValueError('two\n  lines')) == 'two lines'

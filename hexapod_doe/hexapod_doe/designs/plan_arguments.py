@@ -6,13 +6,13 @@
 import argparse
 from pathlib import Path
 
-from hexapod_sim.command_line import CommandLine, file, number, whole
+from hexapod_sim.command_line import MOST_SEED, CommandLine, file, number, whole
 
 from hexapod_doe.designs.design import FRACTIONS
 from hexapod_doe.designs.planner import FULL_TRAINING
 
 _COUNT = whole(ge=1, le=1_000_000)
-_SEED = whole(ge=0, le=2**63)
+_SEED = whole(ge=0, le=MOST_SEED)
 _SHARE = number(gt=0, lt=1)
 COMMANDS = {
     'make': 'make a plan (the default)',
