@@ -6,19 +6,19 @@
 import argparse
 import csv
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from hexapod_sim.command_line import MOST_EPISODES, MOST_SEED, CommandLine, file, folder, whole
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from hexapod_agent import checkpoint
 from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.event_log import EventLog
 from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.progress import Report, episode_report
 from hexapod_agent.run_checkpoint import different, listed
 from hexapod_agent.summary import EpisodeSummary
 from hexapod_agent.training import Trainer, TrainingDivergedError
@@ -45,7 +45,7 @@ def train(
     trainer: Trainer,
     episodes: int,
     directory: Path,
-    report: Callable[[EpisodeSummary], None] = lambda summary: None,
+    report: Report = lambda summary: None,
 ) -> None:
     """Train until the run has so many episodes, with a log and checkpoints in a directory.
 
@@ -104,7 +104,9 @@ def main(args: Sequence[str] | None = None) -> None:
     try:
         trainer = _trainer(options)
         episodes = _episodes(options, trainer)
-        _train_with_progress(trainer, episodes, options.out)
+        name = trainer.spec.letters or 'none'
+        with episode_report(name, trainer.episode, episodes) as report:
+            train(trainer, episodes, options.out, report)
     except (ValueError, OSError, MemoryError) as error:  # configuration, checkpoint, disk, buffer
         parser.error(str(error))
     except TrainingDivergedError as error:
@@ -115,27 +117,6 @@ def main(args: Sequence[str] | None = None) -> None:
     print(f'final average reward {trainer.average_return:.1f}')
     print(f'agent: {options.out / AGENT}')
     print(f'to resume: {options.out / CHECKPOINT}')
-
-
-def _train_with_progress(trainer: Trainer, episodes: int, directory: Path) -> None:
-    progress = Progress(
-        TextColumn('{task.description}'), BarColumn(), MofNCompleteColumn(),
-        TimeRemainingColumn(), TextColumn('{task.fields[status]}'),
-    )  # fmt: skip
-    with progress:
-        task = progress.add_task(
-            trainer.spec.letters or 'none', total=episodes, completed=trainer.episode, status=''
-        )
-
-        def report(summary: EpisodeSummary) -> None:
-            progress.update(
-                task,
-                completed=summary.episode + 1,
-                status=f'return {summary.episode_return:.0f}, mean {summary.average_return:.0f}, '
-                f'saturated {summary.saturated_share:.0%}',
-            )
-
-        train(trainer, episodes, directory, report)
 
 
 def _parser() -> CommandLine:

@@ -21,6 +21,7 @@ from hexapod_doe.campaigns.next_steps import after_analysis
 from hexapod_doe.designs.plan_file import PlanError
 from hexapod_doe.errors import AnalysisError, BagError, TableError
 from hexapod_doe.reporting.report import write_report
+from hexapod_doe.stages import stage
 from hexapod_doe.tables.bag_response import DEFAULT_RESPONSE
 from hexapod_doe.tables.bag_table import bag_responses, confirmation_runs, plan_rule, read_bags
 from hexapod_doe.tables.csv_table import read_csv, read_responses
@@ -37,12 +38,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.error('--table needs --response NAME, the column to analyse')
     try:
         options = Options(**options_of(Options, args), confirmation=plan_rule(args.bags))
-        tables = _tables(args)
-        analysis = analyse(tables, options, _confirmation_runs(args, tables))
+        with stage('analyze: reading the runs'):
+            tables = _tables(args)
+            confirmation = _confirmation_runs(args, tables)
+        with stage('analyze: fitting the model, and drawing from its uncertainty'):
+            analysis = analyse(tables, options, confirmation)
         analysis = replace(analysis, next_steps=_next_steps(args, analysis, arguments))
         args.out.mkdir(parents=True, exist_ok=True)
-        write_json(analysis, args.out / 'analysis.json')
-        page = write_report(analysis, args.out)
+        with stage(f'analyze: drawing the figures of the report into {args.out}'):
+            write_json(analysis, args.out / 'analysis.json')
+            page = write_report(analysis, args.out)
     except (AnalysisError, BagError, PlanError, OSError) as error:
         print(f'analyze: {one_line(error)}', file=sys.stderr)
         return 2
