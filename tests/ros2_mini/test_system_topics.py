@@ -5,7 +5,7 @@
 
 import pytest
 import rclpy
-from ros2_mini import discovery
+from hexapod_node.participants import participants_here
 from ros2_mini.node_context import open_node
 
 pytestmark = [pytest.mark.graph, pytest.mark.system, pytest.mark.usefixtures('sample')]
@@ -27,10 +27,10 @@ def test_node_list_sees_every_one_of_several_participants(output):
 
 
 def test_participants_of_this_host_are_counted():
-    before = discovery.local_participants()
+    before = participants_here()
     assert before >= 1  # the sample
     with open_node():
-        assert discovery.local_participants() == before + 1
+        assert participants_here() == before + 1
 
 
 def test_echo(output, error):

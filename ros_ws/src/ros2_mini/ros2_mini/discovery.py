@@ -6,10 +6,9 @@
 import argparse
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import TypeVar
 
-from hexapod_node.environment import domain_id
+from hexapod_node.participants import participants_here
 from rclpy.node import Node
 
 Found = TypeVar('Found')
@@ -69,26 +68,11 @@ def wait_until_settled(node: Node, limit: float) -> None:
     while (now := time.monotonic()) < start + limit:
         if (graph := _snapshot(node)) != last:
             last, changed = graph, now
-        expected = local_participants()
+        expected = participants_here()
         complete = _discovered(node) >= expected if expected else now > start + _LEAST
         if complete and now > changed + _QUIET:
             return
         time.sleep(_PERIOD)
-
-
-def local_participants() -> int:
-    """Return how many participants of this domain run on this host, this process included.
-
-    Each holds the UDP port 7400 + 250 domain + 10 + 2 i for some i below 120 (RTPS 2.2, section
-    9.6.1.1). The answer is 0 where the system does not list its ports.
-    """
-    first = 7400 + 250 * domain_id() + 10
-    ports = set(range(first, first + 240, 2))
-    table = Path('/proc/net/udp')
-    if not table.exists():
-        return 0
-    rows = [line.split() for line in table.read_text().splitlines()[1:]]
-    return len(ports & {int(row[1].rpartition(':')[2], 16) for row in rows})
 
 
 def _discovered(node: Node) -> int:
