@@ -15,6 +15,7 @@ from hexapod_doe.choosing.choice import Failures, model_failures
 from hexapod_doe.choosing.conclusions import conclude
 from hexapod_doe.choosing.confirm import confirm
 from hexapod_doe.choosing.estimands import estimand, pseudo_values
+from hexapod_doe.choosing.failure import two_groups
 from hexapod_doe.choosing.outlook import final_outlook
 from hexapod_doe.choosing.prediction import predict_all
 from hexapod_doe.errors import TableError
@@ -22,7 +23,13 @@ from hexapod_doe.fitting.curvature import curvature
 from hexapod_doe.fitting.estimate import estimates
 from hexapod_doe.fitting.pipeline import Pipeline, run
 from hexapod_doe.fitting.steps import aliases_of, main_effects, removals, step_record
-from hexapod_doe.tables.describe import design_caveats, failure_caveat, model_caveats, summarise
+from hexapod_doe.tables.caveats import (
+    disagreement_caveat,
+    dispersion_caveat,
+    failure_caveats,
+    unseen_caveat,
+)
+from hexapod_doe.tables.describe import design_caveats, model_caveats, summarise
 from hexapod_doe.tables.table import RESPONSE, RunTable
 
 
@@ -73,16 +80,22 @@ def _analyse(
         confirmation=confirm(outlook, options.confirmation, confirmation_runs),
     )
     failed = _failure_caveats(table, options, failures)
-    caveats = (*base.caveats, *failed, *model_caveats(analysis))
+    spread = dispersion_caveat(outlook.dispersion, 'successes' if analysis.two_part else 'runs')
+    mean = [e.predictions for e in analysis.estimands if e.name == 'mean']
+    if analysis.two_part is not None and mean:
+        failed += disagreement_caveat(analysis.two_part.expected, mean[0])
+    caveats = (*base.caveats, *failed, *spread, *model_caveats(analysis))
     return dataclasses.replace(analysis, caveats=caveats)
 
 
 def _failure_caveats(table: RunTable, options: Options, failures: Failures | None) -> list[str]:
     if failures is not None:
-        return [failure_caveat(failures.record)]
+        return failure_caveats(failures.record, options.alpha)
     threshold = options.failure_threshold
-    if threshold is None or options.estimand != 'mean':
+    if options.estimand != 'mean':
         return []
+    if threshold is None:
+        return unseen_caveat(two_groups(table.values, table.rows['case'].to_numpy()), table.values)
     below = int((table.values < threshold).sum())
     return [
         f'{below} of {len(table.rows)} runs are below the threshold {threshold:g}: too few of one '

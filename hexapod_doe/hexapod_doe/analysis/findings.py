@@ -9,6 +9,8 @@ Every number in a map belongs to the combination whose label is the key, in orig
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from hexapod_doe.fitting.dispersion import Dispersion
+
 Bounds = tuple[float | None, float | None]
 
 
@@ -49,8 +51,12 @@ class TwoPart:
     failure_coef: Mapping[str, float]
     """Log-odds of failure per coded unit."""
     failure_se: Mapping[str, float]
+    failure_lack_of_fit: float | None
+    """p that the model of failures fits the share of each case; None without spare cases."""
     success_terms: tuple[str, ...]
     success_coef: Mapping[str, float]
+    dispersion: Dispersion | None
+    """Whether the spread of the successes differs by factor; None with too few to tell."""
     mean_failed: float
     p_failure: Mapping[str, Estimate]
     reward_success: Mapping[str, Estimate]

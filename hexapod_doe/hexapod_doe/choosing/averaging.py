@@ -79,7 +79,10 @@ class ModelSpace:
         size = int(active.sum()) + 1
         if 2 * size > self.rows - self.absorbed or (self.alike[np.ix_(active, active)]).any():
             return -np.inf
-        _, sse, _ = self.solve(active)
+        try:
+            _, sse, _ = self.solve(active)
+        except linalg.LinAlgError:  # these rows don't tell its terms apart
+            return -np.inf
         bic = self.rows * np.log(max(sse, self.floor) / self.rows) + size * np.log(self.rows)
         return float(self._log_prior(active) - bic / 2)
 
@@ -100,6 +103,9 @@ class ModelSpace:
         q, r = linalg.qr(self.r[:, np.concatenate([[True], active])], mode='economic')
         projected = q.T @ self.rotated
         rest = self.rotated - q @ projected
+        diagonal = np.abs(np.diag(r))
+        if len(diagonal) <= active.sum() or diagonal.min() < 1e-9 * diagonal.max():
+            raise linalg.LinAlgError('dependent terms')
         inverse = linalg.solve_triangular(r, np.eye(len(r)))
         return inverse @ projected, self.outside + float(rest @ rest), inverse
 

@@ -13,7 +13,8 @@ from hexapod_doe.choosing.draws import draw_count, interval_of
 from hexapod_doe.choosing.failure import Threshold, failure_threshold
 from hexapod_doe.choosing.outlook import Outlook, two_part_outlook
 from hexapod_doe.choosing.two_part import Parts, fit_parts, select_parts
-from hexapod_doe.fitting.model import corners, labels
+from hexapod_doe.fitting.logistic import lack_of_fit
+from hexapod_doe.fitting.model import corners, labels, model_matrix
 from hexapod_doe.tables.table import RunTable
 
 
@@ -33,7 +34,7 @@ def model_failures(table: RunTable, options: Options, rng: np.random.Generator) 
     threshold = failure_threshold(table.values, case, options.failure_threshold)
     if threshold is None:
         return None
-    stated = fit_parts(table, threshold.value)
+    stated = fit_parts(table, threshold.value, options.alpha)
     if stated is None:
         return None
     selected = select_parts(table, stated, threshold.value, options.alpha)
@@ -80,8 +81,15 @@ def _record(
         failure_terms=stated.failure_terms,
         failure_coef=dict(zip(stated.failure_terms, map(float, stated.failure.coef), strict=True)),
         failure_se=dict(zip(stated.failure_terms, map(float, error), strict=True)),
+        failure_lack_of_fit=lack_of_fit(
+            stated.failure.probability(model_matrix(table.levels, stated.failure_terms)),
+            failed_rows.astype(float),
+            table.rows.groupby('case').ngroup().to_numpy(),
+            len(stated.failure_terms),
+        ),
         success_terms=stated.success.terms,
         success_coef=dict(zip(stated.success.terms, map(float, stated.success.coef), strict=True)),
+        dispersion=stated.dispersion,
         mean_failed=float(stated.failed.mean()),
         p_failure=estimates(pi, draws.pi),
         reward_success=estimates(mu, draws.mu),

@@ -15,10 +15,17 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from hexapod_doe.choosing.draws import back_draws, coefficient_draws, draw_count, prediction_draws
+from hexapod_doe.choosing.draws import (
+    back_draws,
+    coefficient_draws,
+    draw_count,
+    equal_within,
+    prediction_draws,
+)
 from hexapod_doe.choosing.prediction import back, rank_descending
 from hexapod_doe.choosing.two_part import Parts
 from hexapod_doe.designs.terms import order
+from hexapod_doe.fitting.dispersion import Dispersion, dispersion, relative_deviation
 from hexapod_doe.fitting.model import corners, labels, model_matrix
 from hexapod_doe.fitting.pipeline import Pipeline
 from hexapod_doe.fitting.regression import Fit, ols
@@ -59,6 +66,8 @@ class Outlook:
     """Basis of the differences between their blocks (n, b)."""
     spread: Callable[[np.ndarray], np.ndarray]
     """Draws of the values from draws of the linear predictor (draws, 2^k)."""
+    dispersion: Dispersion | None
+    """Whether the spread of the runs differs by factor; None with too few to tell."""
 
     @property
     def ranking(self) -> tuple[str, ...]:
@@ -69,7 +78,8 @@ class Outlook:
     def choice_rule(self) -> str:
         """Why the first of the ranking comes first, in a sentence."""
         rule = f'highest expected response by the {self.model}'
-        equal = int(np.isclose(self.fits, np.nanmax(self.fits), rtol=1e-10, atol=0).sum())
+        behind = np.nanmax(self.fits) - self.fits
+        equal = int((behind <= equal_within(self.fits[None])[0]).sum())
         return rule if equal == 1 else f'{rule}; of {equal} equal sets the one with fewest letters'
 
 
@@ -80,12 +90,14 @@ def final_outlook(state: Pipeline, rng: np.random.Generator) -> Outlook:
     points = model_matrix(grid, fit.terms)
     count = draw_count(len(points))
     known = fit.s is not None
+    before = _unselected(state)
+    found = dispersion(state.levels, before, state.options.alpha)
     return Outlook(
         model='final model',
         labels=labels(grid),
         fits=back(points @ fit.coef, transform),
         draws=prediction_draws(fit, points, transform, count, rng) if known else None,
-        stated=_stated(_unselected(state), state, count, rng) if known else None,
+        stated=_stated(before, state, count, rng, found) if known else None,
         terms=fit.terms,
         coef=fit.coef,
         value=lambda eta: back(eta, transform),
@@ -93,6 +105,7 @@ def final_outlook(state: Pipeline, rng: np.random.Generator) -> Outlook:
         response=state.steps[-1].response,
         blocks=state.blocks,
         spread=lambda eta: back_draws(eta, transform),
+        dispersion=found,
     )
 
 
@@ -105,28 +118,34 @@ def _unselected(state: Pipeline) -> Fit:
     return ols(state.levels, last.response, terms, state.blocks)
 
 
-def _stated(fit: Fit, state: Pipeline, count: int, rng: np.random.Generator) -> Stated:
-    points = model_matrix(corners(state.table.factors), fit.terms)
+def _stated(
+    fit: Fit, state: Pipeline, count: int, rng: np.random.Generator, found: Dispersion | None
+) -> Stated:
+    grid = corners(state.table.factors)
+    points = model_matrix(grid, fit.terms)
+    ratio = relative_deviation(grid, state.levels, fit, found)
     return Stated(
         fits=back(points @ fit.coef, state.transform),
-        draws=prediction_draws(fit, points, state.transform, count, rng),
-        future_mean=lambda runs: _future_mean(fit, points, state.transform, runs, count, rng),
+        draws=prediction_draws(fit, points, state.transform, count, rng, found),
+        future_mean=lambda runs: _future_mean(
+            coefficient_draws(fit, count, rng, found), points, ratio, state.transform, runs, rng
+        ),
     )
 
 
 def _future_mean(
-    fit: Fit,
+    drawn: tuple[np.ndarray, np.ndarray],
     points: np.ndarray,
+    ratio: np.ndarray,
     transform: Transform | None,
     runs: int,
-    count: int,
     rng: np.random.Generator,
 ) -> np.ndarray:
-    coef, s = coefficient_draws(fit, count, rng)
+    coef, s = drawn
     eta = coef @ points.T
     total = np.zeros_like(eta)
     for _ in range(runs):
-        total += back_draws(eta + s[:, None] * rng.standard_normal(eta.shape), transform)
+        total += back_draws(eta + s[:, None] * ratio * rng.standard_normal(eta.shape), transform)
     return total / runs
 
 
@@ -153,4 +172,5 @@ def two_part_outlook(selected: Parts, unselected: Parts, rng: np.random.Generato
         response=selected.response,
         blocks=selected.blocks,
         spread=lambda eta: unselected.draw(len(eta), rng).mixed_with(eta),
+        dispersion=unselected.dispersion,
     )

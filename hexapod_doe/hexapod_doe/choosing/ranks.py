@@ -9,10 +9,8 @@ import numpy as np
 from scipy import stats
 
 from hexapod_doe.analysis.findings import RankUncertainty
+from hexapod_doe.choosing.draws import equal_within
 from hexapod_doe.choosing.outlook import Outlook
-
-_DIGITS = 10
-"""Values that agree to so many digits are equal: the model doesn't tell their sets apart."""
 
 
 def rank_uncertainty(outlook: Outlook, level: float) -> RankUncertainty | None:
@@ -62,8 +60,8 @@ def share_of_top(draws: np.ndarray, top: int) -> np.ndarray:
     Combinations of equal value, such as those that differ in a factor which the model has not
     kept, share the places that they take: they sum to `top`.
     """
-    scale = np.abs(draws).max(axis=1, keepdims=True) + np.finfo(float).tiny
-    values = -np.round(draws / scale, _DIGITS)
+    best = draws.max(axis=1, keepdims=True)
+    values = np.round((best - draws) / equal_within(draws)[:, None])
     first = stats.rankdata(values, method='min', axis=1)
     last = stats.rankdata(values, method='max', axis=1)
     places = np.clip(top + 1 - first, 0, last + 1 - first)

@@ -81,7 +81,7 @@ def eliminate(
     trace: list[Dropped] = []
     result = fit()
     while True:
-        free = _droppable(kept, hierarchy, protected)
+        free = droppable(kept, hierarchy, protected)
         values = dict(zip(kept, _p_values(result), strict=False))  # those of blocks follow
         if not free or max(values[term] for term in free) <= alpha:
             return tuple(kept), tuple(trace)
@@ -100,9 +100,10 @@ def _p_values(result: RegressionResults) -> list[float]:
     return [float(p) for p in np.where(np.abs(result.params) <= rounding, 1.0, found)]
 
 
-def _droppable(
-    kept: Sequence[str], hierarchy: bool, protected: Collection[str]
+def droppable(
+    kept: Sequence[str], hierarchy: bool = True, protected: Collection[str] = ()
 ) -> tuple[str, ...]:
+    """Return the terms that may go: not the constant, no protected one, no parent of another."""
     return tuple(
         term
         for term in kept

@@ -155,6 +155,7 @@ def ols(
         AnalysisError: there are fewer rows than terms, or the response has no digits left to fit.
     """
     basis = no_blocks(len(levels)) if blocks is None else blocks
+    response = np.asarray(response, float)
     check_rank(levels, terms, basis)
     check_digits(response)
     matrix, size = model_matrix(levels, terms), len(terms)

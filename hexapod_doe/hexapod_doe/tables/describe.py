@@ -8,7 +8,6 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from hexapod_doe.analysis.findings import TwoPart
 from hexapod_doe.analysis.results import Analysis, DesignSummary
 from hexapod_doe.designs.aliases import defining_relation, defining_words, resolution
 from hexapod_doe.fitting.alias_matrix import short_alias, with_partial_aliases
@@ -138,22 +137,6 @@ def _block_caveats(analysis: Analysis) -> list[str]:
         differ = 'differ' if test.p < analysis.options['alpha'] else "don't differ"
         text += f' Blocks {differ} by more than runs of one block do (p = {test.p:.2g}).'
     return [text]
-
-
-def failure_caveat(record: TwoPart) -> str:
-    """Return what a reader must know about failed runs."""
-    text = (
-        f'{record.failures} of {record.runs} runs failed (response below {record.threshold:g}): '
-        'the classical intervals of the final model treat them as noise; the two-part model '
-        'treats them as what they are.'
-    )
-    if record.cases_without_success:
-        names = ', '.join(record.cases_without_success)
-        text += (
-            f' No run of {names} succeeded: its reward given success is extrapolated from the '
-            'other cases.'
-        )
-    return text
 
 
 def missing_cases(levels: pd.DataFrame) -> tuple[tuple[str, ...], int]:

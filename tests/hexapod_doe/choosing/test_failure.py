@@ -3,7 +3,11 @@
 
 import numpy as np
 import pytest
-from hexapod_doe.choosing.failure import failure_threshold
+from hexapod_doe.choosing.failure import failure_threshold, two_groups
+from hexapod_doe.designs.design import fraction
+from hexapod_doe.studies.simulated import Truth, repeated_levels
+from hexapod_doe.tables.caveats import unseen_caveat
+from scipy import special
 
 
 def cases(runs: int, replicates: int = 10) -> np.ndarray:
@@ -63,3 +67,29 @@ def test_a_fixed_threshold_is_used_as_it_is() -> None:
 
 def test_equal_responses_have_no_gap() -> None:
     assert failure_threshold(np.ones(20), cases(20)) is None
+
+
+@pytest.mark.parametrize('share', [0.2, 0.4])
+def test_failures_are_seen_up_to_a_share_of_two_fifths(share: float) -> None:
+    truth = Truth(failure={'1': float(special.logit(share))})
+    levels = repeated_levels(fraction('quarter'), 10)
+    for seed in range(10):
+        response = truth.simulate(levels, np.random.default_rng(seed))
+        assert failure_threshold(response, np.repeat(np.arange(32), 10)) is not None
+
+
+def test_what_the_rule_does_not_call_failure_is_told() -> None:
+    rng = np.random.default_rng(4)
+    response = rng.permuted(np.concatenate([rng.normal(0, 10, 70), rng.normal(500, 100, 30)]))
+    parting = two_groups(response, cases(100))
+    assert parting is not None
+    (text,) = unseen_caveat(parting, response)
+    assert '70 below' in text
+    assert '--failure-threshold' in text
+
+
+def test_strong_effects_and_single_populations_are_not_two_groups() -> None:
+    rng = np.random.default_rng(3)
+    effect = np.where(cases(320) % 4 == 0, 400, 700) + rng.normal(0, 40, 320)
+    assert two_groups(effect, cases(320)) is None
+    assert two_groups(rng.normal(size=320), cases(320)) is None

@@ -49,3 +49,11 @@ def test_groups_open_where_the_first_one_is_surely_better() -> None:
 def test_equal_values_are_one_group() -> None:
     draws = np.ones((10, 3))
     assert groups(draws, np.ones(3), list('abc'), 0.9) == (('a', 'b', 'c'),)
+
+
+@pytest.mark.parametrize('offset', [0.0, 1e12, -1e12])
+def test_sets_are_equal_by_their_differences_not_by_their_distance_from_zero(
+    offset: float,
+) -> None:
+    draws = np.array([[0.0, 40.0, 40.0], [1.0, 2.0, 3.0]]) + offset
+    assert share_of_top(draws, 1) == pytest.approx([0, 0.25, 0.75])

@@ -1,13 +1,20 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+from hexapod_doe.analysis.analysis import analyse
+from hexapod_doe.analysis.options import Options
 from hexapod_doe.choosing.two_part import fit_parts, select_parts
 from hexapod_doe.designs.design import fraction
 from hexapod_doe.fitting.model import corners, labels
 from hexapod_doe.studies.simulated import Truth, repeated_levels, table_of
+from hexapod_doe.tables.csv_table import read_csv
 from hexapod_doe.tables.table import RunTable
+
+CASES = Path(__file__).parents[2] / 'data' / 'cases'
 
 GRID = corners('ABCDEFG')
 TRUTH = Truth(success={'1': 420, 'C': 95, 'B': 30, 'CE': 20}, failure={'1': -1.6, 'C': -0.55})
@@ -21,7 +28,8 @@ def failing_campaign(replicates: int = 10) -> RunTable:
 def test_both_parts_find_the_truth() -> None:
     table = failing_campaign(replicates=40)
     parts = fit_parts(table, 130.0)
-    pi, mu, expected = parts.point()
+    _, mu, expected = parts.point()
+    pi = select_parts(table, parts, 130.0, 0.05).point()[0]
     assert pi == pytest.approx(TRUTH.p_failure(GRID), abs=0.1)
     assert mu == pytest.approx(TRUTH.reward_success(GRID), abs=25)
     assert expected == pytest.approx(TRUTH.mean(GRID), abs=60)
@@ -45,8 +53,8 @@ def test_draws_scatter_about_the_point() -> None:
     draws = parts.draw(4000, np.random.default_rng(1))
     pi, mu, expected = parts.point()
     assert draws.mu.mean(axis=0) == pytest.approx(mu, abs=2)
-    assert draws.expected.mean(axis=0) == pytest.approx(expected, abs=8)
-    assert draws.pi.mean() == pytest.approx(pi.mean(), abs=0.02)
+    assert np.median(draws.pi, axis=0) == pytest.approx(pi, abs=0.03)
+    assert np.median(draws.expected, axis=0) == pytest.approx(expected, abs=8)
 
 
 def test_future_runs_hold_failures() -> None:
@@ -69,3 +77,52 @@ def test_few_successes_get_a_smaller_model() -> None:
     reward[::2] = -100.0 + np.arange(16)
     table = table_of(rows, reward)
     assert fit_parts(table, 0.0).success.terms == ('1', *'ABCDEFG')
+
+
+@pytest.mark.parametrize('threshold', [44, 60, 95, 100, 101, 104])
+def test_any_threshold_ends_in_a_model_or_in_none(threshold: float) -> None:
+    (table,) = read_csv(CASES / '60_fail_one_success.csv', 'y')
+    parts = fit_parts(table, threshold)
+    if parts is not None:
+        assert set(table.factors) < set(parts.success.terms)
+        analysis = analyse([table], Options(failure_threshold=threshold))
+        assert analysis.two_part is not None
+        assert np.isfinite([e.fit for e in analysis.two_part.expected.values()]).all()
+    else:
+        assert threshold >= 95
+
+
+def test_a_failure_that_depends_on_two_sensors_together_is_seen() -> None:
+    # Probabilities to be best of 0.90 were claimed for sets that never are.
+    (table,) = read_csv(CASES / 'S1_failure_interaction_BC.csv', 'y')
+    analysis = analyse([table], Options())
+    parts = analysis.two_part
+    assert parts is not None
+    assert 'BC' in parts.selected_failure_terms
+    assert parts.failure_lack_of_fit is not None
+    assert parts.failure_lack_of_fit > 0.05
+    failed = table.values < parts.threshold
+    shares = table.rows.assign(failed=failed).groupby(['B', 'C'])['failed'].mean()
+    grid = corners(table.factors)
+    pi = [parts.p_failure[name].fit for name in labels(grid)]
+    fitted = grid.assign(pi=pi).groupby(['B', 'C'])['pi'].mean()
+    assert fitted.to_numpy() == pytest.approx(shares.to_numpy(), abs=0.07)
+
+
+def test_a_model_of_failures_that_misses_something_says_so() -> None:
+    truth = Truth(failure={'1': -1.0, 'B': 1.0, 'C': -1.0, 'BCE': 2.5})
+    levels = repeated_levels(fraction('quarter'), 10)
+    table = table_of(levels, truth.simulate(levels, np.random.default_rng(2)))
+    analysis = analyse([table], Options(failure_threshold=130.0))
+    assert any('does not fit the shares' in caveat for caveat in analysis.caveats)
+
+
+def test_few_failures_leave_main_effects() -> None:
+    truth = Truth(failure={'1': -3.0})
+    levels = repeated_levels(fraction('quarter'), 10)
+    table = table_of(levels, truth.simulate(levels, np.random.default_rng(2)))
+    parts = fit_parts(table, 130.0)
+    assert parts is not None
+    assert parts.failure_terms == ('1', *'ABCDEFG')
+    analysis = analyse([table], Options(failure_threshold=130.0))
+    assert any('holds main effects only' in caveat for caveat in analysis.caveats)
