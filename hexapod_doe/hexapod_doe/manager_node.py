@@ -84,7 +84,7 @@ class ManagerNode(Node):
     def __init__(self) -> None:
         super().__init__('manager')
         declare(self, PARAMETERS)
-        plan = Path(self._parameter('plan'))
+        plan = Path(self._parameter('plan')).expanduser()
         if not plan.is_file():
             raise FileNotFoundError(f"plan '{plan}': no such file, expected a plan.csv of `plan`")
         self._held = ExitStack()

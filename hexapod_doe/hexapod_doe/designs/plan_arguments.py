@@ -6,7 +6,7 @@
 import argparse
 from pathlib import Path
 
-from hexapod_sim.command_line import MOST_SEED, CommandLine, file, number, whole
+from hexapod_sim.command_line import MOST_SEED, CommandLine, file, number, path, whole
 
 from hexapod_doe.designs.design import FRACTIONS
 from hexapod_doe.designs.planner import FULL_TRAINING
@@ -91,17 +91,20 @@ def _add_augment(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_confirm(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('campaign', type=Path, help="the campaign's folder, or its plan.csv")
+    parser.add_argument('campaign', type=path, help="the campaign's folder, or its plan.csv")
     parser.add_argument(
         '--sets',
         metavar='CD,CE',
         help='sets to confirm, none for no sensor; by default those that `analyze` puts first',
     )
     parser.add_argument(
-        '--replicates', type=int, metavar='N', help="runs of each set (default by the plan's rule)"
+        '--replicates',
+        type=whole(1),
+        metavar='N',
+        help="runs of each set (default by the plan's rule)",
     )
     parser.add_argument(
-        '--out', type=Path, metavar='FILE', help='file to write (CAMPAIGN/confirm/plan.csv)'
+        '--out', type=file, metavar='FILE', help='file to write (CAMPAIGN/confirm/plan.csv)'
     )
 
 
