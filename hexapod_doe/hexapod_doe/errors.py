@@ -12,6 +12,10 @@ class LockingError(ValueError):
     """A folder lies where files cannot be locked; the text names it and says what to choose."""
 
 
+class UnfinishedError(BagError):
+    """A bag is closed, and does not hold all that its run was to have."""
+
+
 class AnalysisError(ValueError):
     """A table or an option does not allow the analysis; the text names it and the expectation."""
 

@@ -106,6 +106,8 @@ class ManagerNode(Node):
         self._fault: Exception | None = None
         self.exit_status: int | None = None
         self._dashboard = Dashboard(self._campaign, self._parameter('episodes'))
+        for run_id, damage in self._campaign.damaged.items():
+            self._dashboard.log(f'{run_id} is trained anew: {damage}')
         self._page = PageWriter(self._campaign.directory, self._dashboard.log)
         self._status_publisher = self.create_publisher(CampaignStatus, '~/status', LATCHED)
         self._local = LocalWorkers(

@@ -46,6 +46,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if state.done:
         print(f'{row.run_id} is done: {row.bag}')
         return 0
+    if state.damage:
+        print(f'run_case: {row.run_id} is trained anew: {state.damage}', file=sys.stderr)
     try:
         with campaign_lock(plan.resolve().parent, shared=True), row_lock(row.bag):
             keep_config(plan.resolve().parent, args.hyperparameters)

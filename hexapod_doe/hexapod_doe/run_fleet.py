@@ -88,6 +88,8 @@ def _run(args: argparse.Namespace) -> int:
         shared = shared_settings(config, args.episodes or config.training.episodes)
         campaign = Campaign.open(plan, attempts=1, shared=shared)
         campaign.check_own()
+        for run_id, damage in campaign.damaged.items():
+            print(f'run_fleet: {run_id} is trained anew: {damage}', file=sys.stderr)
         campaign.check_writable()
         keep_config(directory, args.hyperparameters)
         due = [row.observations for row in campaign.rows if row.run_id not in campaign.done]

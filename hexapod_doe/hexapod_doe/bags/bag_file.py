@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Iterator
+from contextlib import AbstractContextManager
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import IO, Any, NamedTuple
 
 from hexapod_doe.bags.cdr import decompressed
 from hexapod_doe.bags.decoding import Decoders
@@ -79,6 +80,14 @@ class BagFile:
             self.counts[topic.name] += topic.count
         self.start_ns = self.about.start_ns
         self._check_counts()
+
+    def opened(self, file: Path) -> AbstractContextManager[IO[bytes]]:
+        """Open one of the bag's files for its bytes.
+
+        Raises:
+            BagError: it is missing or damaged, now or while it is read.
+        """
+        return self._open.plain(file)
 
     def run_metadata(self) -> dict[str, str]:
         """Return the metadata of the run; what was written last holds.

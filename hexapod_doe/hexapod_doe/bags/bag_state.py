@@ -10,8 +10,9 @@ from pathlib import Path
 from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.bags.location import bag_folders, user_path
 from hexapod_doe.bags.mcap_file import is_mcap
-from hexapod_doe.bags.run_bag import COMPLETE, EPISODE_RESULT
-from hexapod_doe.errors import BagError
+from hexapod_doe.bags.run_bag import COMPLETE, DIGEST, EPISODE_RESULT
+from hexapod_doe.bags.verify import check_bytes
+from hexapod_doe.errors import BagError, UnfinishedError
 
 
 def is_complete(bag: str | Path) -> bool:
@@ -22,13 +23,28 @@ def is_complete(bag: str | Path) -> bool:
 def complete_metadata(bag: str | Path) -> dict[str, str] | None:
     """Return what a complete bag says of its run; None if there is none."""
     try:
-        file = BagFile(Path(bag))
-        metadata = file.run_metadata()
-        recorded = file.counts[file.topic_of_type(EPISODE_RESULT)]
+        return sound_metadata(bag)
     except BagError:
         return None
-    whole = metadata.get('status') == COMPLETE and str(recorded) == metadata.get('episodes')
-    return metadata if whole else None
+
+
+def sound_metadata(bag: str | Path) -> dict[str, str]:
+    """Return what a bag says of its run, once every byte of it is found as it was written.
+
+    Raises:
+        UnfinishedError: it lacks episodes of its run.
+        BagError: it is missing or damaged.
+    """
+    file = BagFile(Path(bag))
+    metadata = file.run_metadata()
+    recorded = file.counts[file.topic_of_type(EPISODE_RESULT)]
+    if metadata.get('status') != COMPLETE or str(recorded) != metadata.get('episodes'):
+        raise UnfinishedError(
+            f'bag {bag}: {recorded} episode results, status {metadata.get("status")!r}, expected '
+            f'{metadata.get("episodes")} and {COMPLETE!r}'
+        )
+    check_bytes(file, metadata.get(DIGEST))
+    return metadata
 
 
 def find_bags(path: str | Path) -> list[Path]:

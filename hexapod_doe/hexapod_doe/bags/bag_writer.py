@@ -65,7 +65,12 @@ class BagWriter:
         if bag.exists():
             raise BagError(f'bag {bag}: exists already, expected a new directory')
         self._file = self._open()
-        self._writer = Writer(self._file, chunk_size=chunk_bytes, compression=CompressionType.ZSTD)
+        self._writer = Writer(
+            self._file,
+            chunk_size=chunk_bytes,
+            compression=CompressionType.ZSTD,
+            enable_data_crcs=True,
+        )
         try:
             self._writer.start(profile=Profile.ROS2)
             self._writer.add_metadata(RUN_RECORD, self.metadata)

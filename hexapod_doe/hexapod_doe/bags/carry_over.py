@@ -18,6 +18,7 @@ from typing import Any
 from mcap.records import Channel, McapRecord, Message, Schema
 from mcap_ros2.decoder import DecoderFactory
 
+from hexapod_doe.bags.cuts import cuts_of
 from hexapod_doe.bags.recording import Recording
 from hexapod_doe.bags.rosbag2 import Topic
 from hexapod_doe.bags.run_bag import EPISODE_RESULT, RESUMED
@@ -71,15 +72,16 @@ def open_recording(
     """
     cut = find_cut(bag, run_id, keep) if keep else None
     if cut is None:
-        return Recording(run_id, bag, metadata, period_ns), 0, 0
+        recording = Recording(run_id, bag, metadata, period_ns)
+        recording.forget_cuts()
+        return recording, 0, 0
     recording = Recording(run_id, bag, {**metadata, RESUMED: str(keep)}, period_ns)
     return recording, keep, carry_over(recording, cut, keep, result_topic)
 
 
 def find_cut(bag: Path, run_id: str, episodes: int) -> Path | None:
     """Return the newest `<bag>.cut_<n>` that holds the first so many episodes of a run, if any."""
-    cuts = sorted(bag.parent.glob(f'{bag.name}.cut_*'), key=_number, reverse=True)
-    for cut in cuts:
+    for cut in cuts_of(bag):
         found = [e.result for e in islice(cut_episodes(cut / f'{bag.name}_0.mcap'), episodes)]
         numbers = [result.episode for result in found if result.run_id == run_id]
         if numbers == list(range(episodes)):
@@ -117,6 +119,8 @@ def carry_over(recording: Recording, cut: Path, episodes: int, result_topic: str
             episode.result.steps,
         )
         end_ns = episode.end_ns
+    recording.secure()
+    recording.forget_cuts(keep=cut)
     return end_ns
 
 
@@ -187,7 +191,3 @@ class _Renaming:
     def topic(self, topic: Topic) -> Topic:
         """Return the topic under its new name."""
         return replace(topic, name=self.name(topic.name))
-
-
-def _number(cut: Path) -> int:
-    return int(cut.name.rsplit('_', 1)[1])

@@ -16,7 +16,8 @@ from hexapod_doe.bags.mcap_file import Contents, full_name
 from hexapod_doe.bags.rosbag2 import METADATA_FILE, ROOT_KEY, VERSION, OfferedQos, offered_qos
 from hexapod_doe.errors import BagError
 
-_YAML_LOADER = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
+YAML_LOADER = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
+"""The fast one where there is one."""
 _NO_COMPRESSION = ('', 'none')
 _FOREIGN = (KeyError, TypeError, AttributeError, ValueError, yaml.YAMLError)
 
@@ -60,7 +61,7 @@ def read_metadata(bag: Path) -> BagMetadata:
     """
     try:
         text = (bag / METADATA_FILE).read_text(encoding='utf-8')
-        information = yaml.load(text, Loader=_YAML_LOADER)[ROOT_KEY]
+        information = yaml.load(text, Loader=YAML_LOADER)[ROOT_KEY]
         version = information['version']
     except OSError as error:
         raise BagError(f'bag {bag}: {METADATA_FILE} cannot be read ({error})') from error

@@ -17,6 +17,7 @@ from pathlib import Path
 from hexapod_doe.bags.bag_writer import BagWriter
 from hexapod_doe.bags.cdr import stamp_ns
 from hexapod_doe.bags.completeness import EpisodeTally, describe
+from hexapod_doe.bags.cuts import forget_cuts
 from hexapod_doe.bags.rosbag2 import Topic
 from hexapod_doe.bags.run_bag import COMPLETE, RECORDING
 from hexapod_doe.bags.schema import is_stamped
@@ -175,7 +176,13 @@ class Recording:
                 f'the bag stays {self.abandon()}'
             )
         self._note(metadata, COMPLETE, episodes)
-        return self._writer.close()
+        bag = self._writer.close()
+        forget_cuts(bag, self._writer.metadata, closed=True)
+        return bag
+
+    def forget_cuts(self, keep: Path | None = None) -> None:
+        """Remove recordings of the run that were cut, but for one, see `cuts`."""
+        forget_cuts(self.bag, self._writer.metadata, keep)
 
     def abandon(self) -> Path:
         """End the file as it is, so that it can be read; the bag keeps its unfinished name."""

@@ -53,8 +53,8 @@ def salvage(bag: str | Path) -> Path:
 def set_aside(bag: str | Path, takeover: bool = False) -> Path | None:
     """Rename what is left of an earlier recording to `<bag>.cut_<n>`, so the run can be repeated.
 
-    That is an unfinished `<bag>.partial`, or a `<bag>` that is damaged or incomplete. A complete
-    bag stays, and so does a directory that never was a bag of that name.
+    That is an unfinished `<bag>.partial`, or a `<bag>` that is damaged, incomplete, or a link that
+    leads nowhere. A complete bag stays, and so does a directory that never was a bag of that name.
 
     Args:
         bag: directory that the finished bag would have had.
@@ -73,7 +73,8 @@ def set_aside(bag: str | Path, takeover: bool = False) -> Path | None:
         if not takeover:
             _check_unlocked(bag)
         aside = partial_path(bag).rename(next(name for name in names if not name.exists()))
-    if _file(bag, bag).is_file() and not is_complete(bag):
+    lost = bag.is_symlink() and not bag.exists()
+    if lost or (_file(bag, bag).is_file() and not is_complete(bag)):
         aside = bag.rename(next(name for name in names if not name.exists()))
     return aside
 

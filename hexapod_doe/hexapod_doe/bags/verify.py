@@ -5,13 +5,28 @@
 
 from __future__ import annotations
 
+import struct
+import zlib
 from collections import Counter
+from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import IO
+
+import yaml
+from mcap.records import DataEnd, McapRecord, Metadata
+from mcap.stream_reader import StreamReader
+from mcap.writer import MCAP0_MAGIC
 
 from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.bags.digest import Digest
+from hexapod_doe.bags.metadata import YAML_LOADER
+from hexapod_doe.bags.rosbag2 import METADATA_FILE, ROOT_KEY
 from hexapod_doe.bags.run_bag import DIGEST, EPISODE_RESULT
 from hexapod_doe.errors import BagError
+
+_FOOTER = struct.Struct('<QQI')
+"""Where the summary starts, where its offsets start, and the sum over all up to here."""
+_SUM_BYTES = 4
 
 
 def verify(bag: str | Path) -> None:
@@ -26,6 +41,7 @@ def verify(bag: str | Path) -> None:
     metadata = file.run_metadata()
     check_messages(file, metadata.get(DIGEST))
     _check_episodes(file, int(metadata['episodes']))
+    check_bytes(file, metadata.get(DIGEST))
 
 
 def check_messages(file: BagFile, digest: str | None) -> None:
@@ -47,6 +63,65 @@ def check_messages(file: BagFile, digest: str | None) -> None:
     read = found.hexdigest(file.types)
     if digest is not None and read != digest:
         raise BagError(f'bag {file.path}: digest {read}, expected {digest} as recorded')
+
+
+def check_bytes(file: BagFile, digest: str | None) -> None:
+    """Make sure that every byte of a bag is as it was written, without decoding a message.
+
+    The files' sums cover all of them, and they repeat metadata.yaml. A file without a sum over its
+    data, of an earlier version or another maker, is read message by message against its digest.
+
+    Raises:
+        BagError: a byte is not.
+    """
+    for path in file.files:
+        with file.opened(path) as stream:
+            records = list(_outer_records(stream))
+        if any(isinstance(record, DataEnd) and record.data_section_crc for record in records):
+            _check_copy(file, records)
+        elif digest is not None:
+            check_messages(file, digest)
+            return
+
+
+def _outer_records(stream: IO[bytes]) -> Iterator[McapRecord]:
+    """Yield what stands outside of chunks, once the sums of a file are found right."""
+    _check_summary(stream.read())
+    stream.seek(0)
+    for record in StreamReader(stream, emit_chunks=True, validate_crcs=True).records:
+        if isinstance(record, (Metadata, DataEnd)):
+            yield record
+
+
+def _check_summary(content: bytes) -> None:
+    """Compare the sum over a file's summary and footer, which no reader does.
+
+    Raises:
+        ValueError: it is another one.
+    """
+    end = len(content) - len(MCAP0_MAGIC)
+    start, _, expected = _FOOTER.unpack_from(content, end - _FOOTER.size)
+    found = zlib.crc32(content[start : end - _SUM_BYTES])
+    if expected and found != expected:
+        raise ValueError(f'sum of its summary {found}, expected {expected}')
+
+
+def _check_copy(file: BagFile, records: Iterable[McapRecord]) -> None:
+    """Compare metadata.yaml with its copy in the bag's file."""
+    copies = [
+        record.metadata.get('serialized_metadata', '')
+        for record in records
+        if isinstance(record, Metadata) and record.name == 'rosbag2'
+    ]
+    path = file.path / METADATA_FILE
+    if not copies or not path.is_file():
+        return
+    text, copy = path.read_text(encoding='utf-8'), copies[-1]
+    if yaml.load(text, YAML_LOADER)[ROOT_KEY] != yaml.load(copy, YAML_LOADER):
+        raise BagError(
+            f'bag {file.path}: {METADATA_FILE} is not what the recorder wrote, expected the copy '
+            f'of it in {file.files[0].name}'
+        )
 
 
 def _check_episodes(file: BagFile, episodes: int) -> None:

@@ -14,11 +14,11 @@ from pathlib import Path
 import yaml
 from hexapod_agent.config import AgentConfig
 
-from hexapod_doe.bags.bag_state import complete_metadata
+from hexapod_doe.bags.bag_state import sound_metadata
 from hexapod_doe.bags.run_identity import differences, run_identity, settings
 from hexapod_doe.designs.plan_file import read_plan
 from hexapod_doe.designs.plan_types import Plan
-from hexapod_doe.errors import CampaignError
+from hexapod_doe.errors import BagError, CampaignError
 
 PLAN_FILE = 'plan.csv'
 RUNS_FOLDER = 'runs'
@@ -50,9 +50,12 @@ class Row:
         Args:
             shared: what all runs are to have in common, see `settings`; empty where unknown.
         """
-        found = complete_metadata(self.bag)
-        if found is None:
+        if not os.path.lexists(self.bag):
             return BagState(whole=False)
+        try:
+            found = sound_metadata(self.bag)
+        except BagError as error:
+            return BagState(whole=False, damage=str(error))
         return BagState(True, differences(run_identity(found), self.identity | dict(shared)))
 
 
@@ -63,6 +66,8 @@ class BagState:
     whole: bool
     other: str = ''
     """How the run of a whole bag differs from the row; empty if it is the row's."""
+    damage: str = ''
+    """Why what is there is no whole bag; empty where there is nothing."""
 
     @property
     def done(self) -> bool:
@@ -142,6 +147,8 @@ class Campaign:
     """Why each try of a run failed, by run id."""
     others: dict[str, str] = field(default_factory=dict)
     """Rows at whose place there is the whole bag of another run, and how that differs."""
+    damaged: dict[str, str] = field(default_factory=dict)
+    """Rows whose bag was damaged when the campaign was opened, and how; they are due again."""
     tried: dict[str, set[str]] = field(default_factory=dict)
     """Workers on which a run failed or got stuck, by run id."""
 
@@ -165,6 +172,9 @@ class Campaign:
         states = {row.run_id: row.bag_state(campaign.shared) for row in rows}
         campaign.done = {run_id for run_id, state in states.items() if state.done}
         campaign.others = {run_id: state.other for run_id, state in states.items() if state.other}
+        campaign.damaged = {
+            run_id: state.damage for run_id, state in states.items() if state.damage
+        }
         return campaign
 
     def check_own(self) -> None:

@@ -72,7 +72,11 @@ class FleetRow:
         if cut is not None:
             metadata[RESUMED] = str(done)
         self._recording = Recording(row.run_id, row.bag, metadata, CONTROL_PERIOD_NS)
-        self._last_ns = carry_over(self._recording, cut, done, _RESULTS.name) if cut else 0
+        self._last_ns = 0
+        if cut is None:
+            self._recording.forget_cuts()
+        else:
+            self._last_ns = carry_over(self._recording, cut, done, _RESULTS.name)
         self._events = EventLog(Path(f'{row.bag}.tensorboard'), done)
 
     def _begin(self, config: AgentConfig) -> tuple[Trainer, Path | None]:

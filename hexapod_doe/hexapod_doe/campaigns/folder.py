@@ -18,10 +18,11 @@ from hexapod_doe.bags.rosbag2 import partial_path
 from hexapod_doe.bags.run_bag import EPISODE_RESULT, RUN_RECORD
 from hexapod_doe.bags.run_identity import settings
 from hexapod_doe.bags.salvage import whole_records
+from hexapod_doe.bags.verify import verify
 from hexapod_doe.campaigns.campaign import PLAN_FILE, Row, read_rows
 from hexapod_doe.campaigns.failures import read_failures
 from hexapod_doe.campaigns.progress import Progress, Run, State
-from hexapod_doe.errors import LockingError
+from hexapod_doe.errors import BagError, LockingError
 from hexapod_doe.file_lock import lock
 
 _BEGAN, _ENDED = 'recording_began', 'recording_ended'
@@ -65,7 +66,26 @@ def read_row(row: Row) -> Run:
         file = partial / f'{row.bag.name}_0.mcap'
         run.state = State.RUNNING if _held(file) else State.INTERRUPTED
         _read_unfinished(run, file)
+    elif bag.damage:
+        run.state, run.reason = State.DAMAGED, bag.damage
     return run
+
+
+def verify_done(progress: Progress, directory: Path) -> int:
+    """Read back every bag of a done row; what is not as recorded becomes damaged.
+
+    Returns:
+        How many bags were found to be what was recorded.
+    """
+    sound = 0
+    bags = {row.run_id: row.bag for row in read_rows(directory / PLAN_FILE)}
+    for run in progress.having(State.DONE):
+        try:
+            verify(bags[run.run_id])
+            sound += 1
+        except BagError as error:
+            run.state, run.reason = State.DAMAGED, str(error)
+    return sound
 
 
 def _read_whole(run: Run, file: BagFile) -> None:

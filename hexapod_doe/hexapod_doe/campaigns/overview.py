@@ -23,6 +23,7 @@ _STYLES = {
     State.INTERRUPTED: 'yellow',
     State.FAILED: 'red',
     State.OTHER: 'red',
+    State.DAMAGED: 'red',
     State.DUE: 'dim',
 }
 
@@ -92,5 +93,6 @@ def _failures(progress: Progress) -> RenderableType:
     lines += [
         f'{r.run_id} has the bag of another run: {r.reason}' for r in progress.having(State.OTHER)
     ]
+    lines += [f'{r.run_id} is damaged: {r.reason}' for r in progress.having(State.DAMAGED)]
     lines += [f'runs are not alike: {text}' for text in progress.mixed]
     return Group('', *map(Text, lines)) if lines else Group()

@@ -15,7 +15,7 @@ from pathlib import Path
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
 from hexapod_doe.campaigns.curves import limits, scaled, thin
-from hexapod_doe.campaigns.progress import Progress, State, duration
+from hexapod_doe.campaigns.progress import OPEN, Progress, State, duration
 
 PAGE_FILE = 'progress.html'
 _RELOAD_S = 30
@@ -47,7 +47,7 @@ def render(progress: Progress) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    open_runs = progress.having(State.DUE, State.RUNNING, State.INTERRUPTED)
+    open_runs = progress.having(*OPEN)
     low, high = limits(thin(run.returns, _POINTS) for run in progress.runs.values())
     return environment.get_template('progress.html.jinja').render(
         progress=progress,

@@ -23,7 +23,13 @@ class State(StrEnum):
     """It was begun, and nobody works at it now."""
     OTHER = 'other'
     """The bag in its place is that of another run."""
+    DAMAGED = 'damaged'
+    """Its bag is not what was recorded: the row is due again."""
     DUE = 'due'
+
+
+OPEN = (State.DUE, State.RUNNING, State.INTERRUPTED, State.DAMAGED)
+"""What is not done yet, and will be."""
 
 
 @dataclass
@@ -113,7 +119,7 @@ class Progress:
     def seconds_left(self) -> float:
         """Expected time to the end at the present rate; NaN while nothing is known."""
         longest = max((run.planned for run in self.runs.values()), default=0)
-        open_runs = self.having(State.DUE, State.RUNNING, State.INTERRUPTED)
+        open_runs = self.having(*OPEN)
         left = sum((run.planned or longest) - len(run.returns) for run in open_runs)
         if not open_runs:
             return 0.0

@@ -11,12 +11,13 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
+from hexapod_doe.bags.bag_state import sound_metadata
 from hexapod_doe.bags.run_identity import differences, run_identity
 from hexapod_doe.bags.run_record import RunRecord, read_run
 from hexapod_doe.campaigns.campaign import PLAN_FILE, rows_of
 from hexapod_doe.designs.plan_file import PlanError, read_plan
 from hexapod_doe.designs.plan_types import Plan, PlanSettings
-from hexapod_doe.errors import TableError
+from hexapod_doe.errors import BagError, TableError, UnfinishedError
 
 _NAMED = 8
 
@@ -94,6 +95,28 @@ class Group:
             f'{self.title} adds to another plan ({first.design}), whose runs are not among these: '
             'give both folders to analyse them together.',
         )
+
+
+def sound_bags(bags: Sequence[Path]) -> tuple[list[Path], list[str]]:
+    """Return the bags of complete runs, and a caveat on the unfinished and on the damaged ones."""
+    complete: list[Path] = []
+    unfinished, damaged = 0, []
+    for bag in bags:
+        try:
+            sound_metadata(bag)
+            complete.append(bag)
+        except UnfinishedError:
+            unfinished += 1
+        except BagError as error:
+            damaged.append(str(error))
+    caveats = [f'{unfinished} bags of unfinished runs are left out.'] if unfinished else []
+    if damaged:
+        more = f' and {len(damaged) - _NAMED} more' if len(damaged) > _NAMED else ''
+        caveats.append(
+            f'{len(damaged)} bags are damaged and left out: {"; ".join(damaged[:_NAMED])}{more}; '
+            'the command that trained them trains these rows anew.'
+        )
+    return complete, caveats
 
 
 def group_runs(bags: Iterable[Path]) -> tuple[list[Group], list[Part], tuple[str, ...]]:

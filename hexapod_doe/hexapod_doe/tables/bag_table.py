@@ -17,7 +17,7 @@ from hexapod_doe.designs.plan_file import read_plan
 from hexapod_doe.designs.plan_types import Confirmation
 from hexapod_doe.errors import BagError, TableError
 from hexapod_doe.fitting.model import EMPTY_SET
-from hexapod_doe.tables.bag_groups import Group, Part, group_runs
+from hexapod_doe.tables.bag_groups import Group, Part, group_runs, sound_bags
 from hexapod_doe.tables.bag_response import DEFAULT_RESPONSE, response_of
 from hexapod_doe.tables.table import (
     BLOCK,
@@ -57,11 +57,12 @@ def read_bags(
             configuration, or they cannot be analysed.
     """
     bags = [bag for path in paths for bag in find_bags(path)]
-    complete = [bag for bag in bags if is_complete(bag)]
+    complete, skipped = sound_bags(bags)
     source = ', '.join(map(str, paths))
     if not complete:
-        raise TableError(f'{source}: {len(bags)} bags, none of a complete run')
-    skipped = len(bags) - len(complete)
+        raise TableError(
+            ' '.join([f'{source}: {len(bags)} bags, none of a complete run', *skipped])
+        )
     groups, confirming, found = group_runs(complete)
     if not groups and confirming:
         raise TableError(
@@ -70,11 +71,8 @@ def read_bags(
         )
     if not groups:
         raise TableError(f'{source}: no run to analyse. {" ".join(found)}')
-    unfinished = (f'{skipped} bags of unfinished runs are left out.',) if skipped else ()
     names = tuple(factors or LETTERS)
-    return [
-        _table(group, source, (*unfinished, *found), names, response, blocks) for group in groups
-    ]
+    return [_table(group, source, (*skipped, *found), names, response, blocks) for group in groups]
 
 
 def plan_rule(paths: Sequence[Path]) -> Confirmation:

@@ -103,14 +103,14 @@ def test_stopping_leaves_a_readable_unfinished_bag(worker, tmp_path):
         assert reader.message_count == 1
 
 
-def test_next_run_gives_up_the_open_one_and_sets_a_cut_one_aside(worker, tmp_path):
+def test_next_run_gives_up_the_open_one_and_leaves_nothing_of_it(worker, tmp_path):
     bag = tmp_path / 'r1'
     for attempt in range(2):
         assert worker.start(bag, attempt=str(attempt)).success
         worker.report(0, 0)
         assert worker.spin_until(lambda: worker.recorder._recording.results == {0})
     assert worker.finish(1).success
-    assert sorted(os.listdir(tmp_path)) == ['r1', 'r1.cut_1']
+    assert os.listdir(tmp_path) == ['r1']
     assert read_run(bag).metadata['attempt'] == '1'
 
 
