@@ -36,6 +36,8 @@ P_INTERACTION = (0.01, 0.10, 0.25)
 """Prior probability of an interaction with none, one or both parents active."""
 SWEEPS, BURN_IN = 400, 50
 _SHOWN = 10
+_DEPENDENT = 1e-9
+"""Share of the longest diagonal of R below which a column depends on those before it."""
 
 
 class ModelSpace:
@@ -99,8 +101,13 @@ class ModelSpace:
         """Return coefficients, error sum of squares and R⁻¹ of a model with the constant.
 
         The response is centred: the constant lacks `centre`.
+
+        Raises:
+            LinAlgError: The columns depend on each other, as in the few rows of some successes.
         """
         q, r = linalg.qr(self.r[:, np.concatenate([[True], active])], mode='economic')
+        if np.abs(np.diag(r)).min() < _DEPENDENT * np.abs(np.diag(r)).max():
+            raise linalg.LinAlgError('dependent columns')
         projected = q.T @ self.rotated
         rest = self.rotated - q @ projected
         diagonal = np.abs(np.diag(r))

@@ -64,3 +64,13 @@ def test_sixteen_single_runs_are_enough_to_say_something() -> None:
     found = average(levels, y, lambda eta: eta, 0.9, rng)
     assert found.p_active['C'] > 0.9
     assert all(np.isfinite(item.fit) for item in found.predictions.values())
+
+
+def test_rows_that_cannot_tell_a_factor_from_the_constant() -> None:
+    # The few runs that succeeded may all have the same sensor.
+    levels = pd.concat([corners('ABC').query('A == 1')] * 3, ignore_index=True)
+    rng = np.random.default_rng(7)
+    y = 3.0 * levels['B'].to_numpy() + rng.normal(size=12)
+    found = average(levels, y, lambda eta: eta, 0.9, rng)
+    assert found.p_active['A'] == 0
+    assert found.p_active['B'] + found.p_active['AB'] > 0.9
