@@ -23,6 +23,8 @@ from hexapod_doe.designs.terms import CONSTANT
 from hexapod_doe.fitting.model import model_matrix
 from hexapod_doe.fitting.regression import Fit
 
+_ROUNDING = 1e-20
+"""Share of the sum of squares that is not spread but the last digits of the numbers."""
 _LEAST_DF = 12
 """With fewer degrees of freedom of the error a test of variances sees nothing."""
 
@@ -47,7 +49,7 @@ def dispersion(levels: pd.DataFrame, fit: Fit, alpha: float) -> Dispersion | Non
         fit: A fit without selection, so that what it leaves is not an effect left out.
         alpha: Significance level.
     """
-    if fit.df_error < _LEAST_DF or fit.sse <= 0:
+    if fit.df_error < _LEAST_DF or fit.sse <= _ROUNDING * fit.sst:
         return None
     free = 1 - fit.leverage
     size = np.abs(fit.residuals)[free > 1e-9] / np.sqrt(free[free > 1e-9])
@@ -78,7 +80,10 @@ def covariance_root(fit: Fit, found: Dispersion | None) -> np.ndarray:
         return fit.root
     size = len(fit.terms)
     covariance = np.asarray(fit.result.cov_HC3)[:size, :size]
-    return np.linalg.cholesky(covariance / fit.result.mse_resid)
+    try:
+        return np.linalg.cholesky(covariance / fit.result.mse_resid)
+    except np.linalg.LinAlgError:  # runs without any spread: HC3 is singular
+        return fit.root
 
 
 def relative_deviation(
