@@ -19,6 +19,7 @@ from hexapod_agent.networks import Actor, initial_bounds
 from hexapod_agent.optimizer import ClippedAdam
 from hexapod_agent.parameters import ParameterStack
 from hexapod_agent.replay import Batch
+from hexapod_agent.running_scale import RunningScale
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,7 @@ class Ddpg:
         actor_parameters: Online actor.
         critic_parameters: Online critic, the first of two.
         actor_config: The policy's layers and training.
+        scale: How observations become the networks' inputs; None if they are.
 
     Args:
         observation_size: Numbers of an observation.
@@ -59,6 +61,7 @@ class Ddpg:
         dtype: Number format of parameters, losses and optimisers.
         hidden_dtype: Number format of the hidden layers in an update; `dtype` if None.
         device: Where everything is kept and computed.
+        scale: How observations become inputs, which `act` and `update` take; it is kept here.
     """
 
     def __init__(
@@ -74,9 +77,10 @@ class Ddpg:
         dtype: torch.dtype = torch.float32,
         hidden_dtype: torch.dtype | None = None,
         device: torch.device | str = 'cpu',
+        scale: RunningScale | None = None,
     ) -> None:
         sizes = (observation_size, action_size)
-        self.actor_config = actor
+        self.actor_config, self.scale = actor, scale
         self._target_smoothing = target_smoothing
         self._smoothing: float | Tensor = target_smoothing
         self._single = agents == 1
@@ -116,7 +120,7 @@ class Ddpg:
         return tensor[0] if self._single else tensor
 
     def act(self, observation: Tensor) -> Tensor:
-        """Actions (agents, action size) for observations (agents, observation size)."""
+        """Actions (agents, action size) for inputs (agents, observation size)."""
         action = self._policy.forward(self._inner(observation.unsqueeze(1)))
         return action.view(*observation.shape[:1], -1).clone()
 
@@ -193,19 +197,24 @@ class Ddpg:
 
     def state_dict(self) -> dict[str, Any]:
         """Networks, targets and optimisers."""
-        return {name: part.flat for name, part in self._stacks().items()} | {
-            name: optimizer.state_dict() for name, optimizer in self._optimizers().items()
-        }
+        return (
+            {name: part.flat for name, part in self._stacks().items()}
+            | {name: optimizer.state_dict() for name, optimizer in self._optimizers().items()}
+            | ({'scale': self.scale.state_dict()} if self.scale else {})
+        )
 
     def acting_state(self) -> dict[str, Any]:
-        """The actor alone."""
-        return {'actor': self.actor_parameters.flat}
+        """The actor alone, with the scale of its inputs."""
+        scale = {'scale': self.scale.acting_state()} if self.scale else {}
+        return {'actor': self.actor_parameters.flat, **scale}
 
     def load_state_dict(self, state: dict[str, Any]) -> None:
         """Take over what `state_dict` or `acting_state` gave, of networks with the same layers."""
         for name, part in self._stacks().items():
             if name in state:
                 part.flat.copy_(state[name])
+        if self.scale:
+            self.scale.load_state_dict(state['scale'])
         for name, optimizer in self._optimizers().items():
             if name in state:
                 optimizer.load_state_dict(state[name])

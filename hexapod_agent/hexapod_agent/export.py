@@ -23,6 +23,7 @@ from onnx import TensorProto, helper, numpy_helper
 from hexapod_agent import checkpoint
 from hexapod_agent.layers import NORM_EPSILON
 from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.running_scale import LIMIT
 from hexapod_agent.training import Trainer
 
 _OPSET = 17
@@ -64,9 +65,20 @@ def policy_model(trainer: Trainer) -> onnx.ModelProto:
         helper.make_node('Clip', ['scaled', 'lowest', 'highest'], ['clipped']),
         helper.make_node('Cast', ['clipped'], ['observation'], to=TensorProto.FLOAT),
     ]
+    scale = trainer.agent.scale
+    if scale:
+        nodes += [
+            helper.make_node('Sub', ['observation', 'mean'], ['difference']),
+            helper.make_node('Mul', ['difference', 'gain'], ['amplified']),
+            helper.make_node('Clip', ['amplified', 'least', 'most'], ['input']),
+        ]
+        constants |= {
+            'mean': scale.center, 'gain': scale.gain,
+            'least': np.array(-LIMIT, np.float32), 'most': np.array(LIMIT, np.float32),
+        }  # fmt: skip
     arrays = trainer.agent.actor_parameters.arrays
     weights = {name: array[0].numpy() for name, array in arrays.items()}
-    layers = _layers(weights, trainer.config.actor.layer_norm)
+    layers = _layers('input' if scale else 'observation', weights, trainer.config.actor.layer_norm)
     constants |= {
         name: np.ones(weights[name.replace('.gain', '.bias')].shape, np.float32)
         for node in layers
@@ -92,9 +104,11 @@ def policy_model(trainer: Trainer) -> onnx.ModelProto:
     return model
 
 
-def _layers(weights: Mapping[str, NDArray[np.float32]], normalize: bool) -> list[onnx.NodeProto]:
+def _layers(
+    x: str, weights: Mapping[str, NDArray[np.float32]], normalize: bool
+) -> list[onnx.NodeProto]:
     """Affine layers with ReLU between them, normalised before it or not, and tanh at the end."""
-    nodes, x = [], 'observation'
+    nodes = []
     names = [name.removesuffix('.weight') for name in weights if name.endswith('.weight')]
     for name in names:
         arrays = [f'{name}.weight', f'{name}.bias']

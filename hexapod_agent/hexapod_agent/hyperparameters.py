@@ -85,6 +85,8 @@ class DdpgConfig:
             fill no group go into the buffer alone.
         update_ratio: Updates per step; those of a group are a whole number.
         reward_scale: Factor of the reward as the critic learns it.
+        normalize_observations: Whether the networks take observations less their mean and over
+            their standard deviation, of all that the run has observed so far.
     """
 
     batch_size: _Count
@@ -95,6 +97,7 @@ class DdpgConfig:
     update_every: _Count
     update_ratio: _PositiveFactor
     reward_scale: _PositiveFactor
+    normalize_observations: bool
 
     @property
     def group_size(self) -> int:

@@ -41,7 +41,7 @@ def trained_policy(agent: Ddpg) -> Policy:
     ]
 
     def act(observation: NDArray[np.float32]) -> NDArray[np.float32]:
-        features = observation
+        features = agent.scale.scaled(observation) if agent.scale else observation
         for weight, bias in hidden:
             features = weight @ features + bias
             if normalize:

@@ -25,6 +25,7 @@ from hexapod_agent.noise import OrnsteinUhlenbeckNoise
 from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.policies import trained_policy
 from hexapod_agent.replay import Batch, ReplayBuffer
+from hexapod_agent.running_scale import RunningScale
 from hexapod_agent.summary import EpisodeRecord, EpisodeSummary
 
 
@@ -72,6 +73,7 @@ class Trainer:
             spec.size, ACTION_SIZE, config.actor, config.critic, ddpg.batch_size,
             ddpg.target_smoothing, _torch_generator(init),
             hidden_dtype=torch.bfloat16 if precision == 'bfloat16' else None,
+            scale=RunningScale(spec.size) if ddpg.normalize_observations else None,
         )  # fmt: skip
         self._policy = trained_policy(self.agent)
         self._replay = ReplayBuffer(
@@ -125,6 +127,8 @@ class Trainer:
             raise ValueError(f'episode {episode} cannot begin, expected episode {self.episode}')
         self._record = EpisodeRecord(episode)
         self.agent.set_rate_share(self.rate_share)
+        if self.agent.scale:
+            self.agent.scale.refresh()
         self._noise.reset()
         self._action = None
 
@@ -166,8 +170,11 @@ class Trainer:
         return config.group_size if is_time and len(self._replay) >= config.batch_size else 0
 
     def sample(self, batch: Batch) -> None:
-        """Draw the transitions of the next updates, as many as the batches are."""
+        """Draw the transitions of the next updates, as many as the batches are, and scale them."""
         self._replay.sample(self._replay_generator, batch)
+        if self.agent.scale:
+            self.agent.scale.scale(batch.observation)
+            self.agent.scale.scale(batch.next_observation)
 
     def note_update(self, statistics: Mapping[str, float]) -> None:
         """Take note of what an update saw, by the names of `UpdateStatistics`.
@@ -200,6 +207,8 @@ class Trainer:
             raise self._diverged(f'{self.spec.locate(index)} is {observation[index]}')
         if not math.isfinite(outcome.reward):
             raise self._diverged(f'the reward is {outcome.reward}')
+        if self.agent.scale:
+            self.agent.scale.add(observation)
         if self._action is None:
             self._replay.begin(observation)
             return

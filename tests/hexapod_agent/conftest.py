@@ -28,7 +28,7 @@ def switched_config(small_config) -> AgentConfig:
     changes = {
         'actor': {'layer_norm': True},
         'critic': {'layer_norm': True, 'twin': True},
-        'ddpg': {'update_ratio': 0.5},
+        'ddpg': {'update_ratio': 0.5, 'normalize_observations': True},
         'training': {'episodes': 4, 'final_rate': 0.2},
     }
     return small_config.changed(changes, 'switched_config')

@@ -3,6 +3,7 @@
 
 """One update is the textbook's, computed here by autograd; the switches do what they name."""
 
+import numpy as np
 import pytest
 import torch
 from hexapod_agent.ddpg import Ddpg
@@ -278,6 +279,14 @@ def test_the_policy_in_numpy_is_the_actor(make_trainer, switched_config):
     """With normalised layers; without them an exported policy is held against it, too."""
     trainer = make_trainer(config=switched_config)
     trainer.agent.actor_parameters.flat.mul_(8.0)
-    observation = torch.linspace(-1.0, 1.0, trainer.spec.size)
-    action = trained_policy(trainer.agent)(observation.numpy())
-    torch.testing.assert_close(trainer.agent.act(observation[None])[0], torch.from_numpy(action))
+    scale = trainer.agent.scale
+    generator = np.random.default_rng(0)
+    for _ in range(5):
+        scale.add(generator.uniform(-1.0, 1.0, trainer.spec.size).astype(np.float32))
+    scale.refresh()
+    observation = np.linspace(-1.0, 1.0, trainer.spec.size, dtype=np.float32)
+    action = trained_policy(trainer.agent)(observation)
+    inputs = torch.from_numpy(observation)[None].clone()
+    scale.scale(inputs)
+    assert not np.allclose(inputs[0], observation)
+    torch.testing.assert_close(trainer.agent.act(inputs)[0], torch.from_numpy(action))

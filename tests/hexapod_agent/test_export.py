@@ -33,6 +33,11 @@ def trainer(make_trainer, request):
     letters, config = request.param
     made = make_trainer(letters, config=request.getfixturevalue(config))
     made.agent.actor_parameters.flat.mul_(8.0)  # actions of every size, also saturated ones
+    if made.agent.scale:
+        generator = np.random.default_rng(1)
+        for _ in range(9):
+            made.agent.scale.add(generator.normal(0.1, 0.3, made.spec.size).astype(np.float32))
+        made.agent.scale.refresh()
     if made.config.actor.layer_norm:  # which undoes the scale of all but the last layer
         made.agent.actor_parameters.arrays['output.weight'].mul_(32.0)
     return made

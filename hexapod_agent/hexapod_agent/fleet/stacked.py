@@ -84,7 +84,9 @@ class StackedLearners:
         for seat in seats:
             seat.attempt(partial(seat.trainer.store, seat.observation, seat.outcome))
             row = self._observations[seat.place, : seat.observation.size]
-            row.copy_(torch.from_numpy(seat.observation))
+            scale = seat.trainer.agent.scale
+            inputs = scale.scaled(seat.observation) if scale else seat.observation
+            row.copy_(torch.from_numpy(inputs))
         observations = self._observations.to(self._device, non_blocking=True)
         outputs = self._stack.act(observations).cpu().numpy()
         for seat in seats:
