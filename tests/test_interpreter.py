@@ -8,11 +8,10 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.evaluation import run_episode, summarize
-from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.policies import random_policy
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.train import train_episode
 from hexapod_agent.training import Trainer
 from hexapod_doe.bags.bag_file import BagFile
@@ -20,7 +19,7 @@ from hexapod_doe.choosing.devices import read_devices
 from hexapod_doe.replays.rescoring import recorded_config, rescore
 
 SAMPLE = Path(__file__).parents[1] / 'bags' / 'sample'
-SMALL = AgentConfig.from_mapping(
+SMALL = RunSpec.from_mapping(
     {
         'task': {'time_limit_steps': 40},
         'actor': {'hidden': [16]},
@@ -48,7 +47,7 @@ def compensated_sum(values: Iterable, start=0):
 
 def training() -> list[object]:
     """Summaries of a training, with each reward term."""
-    trainer, env = Trainer(ObservationSpec('ABCDE'), SMALL, 1), HexapodLine('ABCDE', SMALL)
+    trainer, env = Trainer(SMALL.observing('ABCDE'), 1), HexapodLine('ABCDE', SMALL)
     return [train_episode(env, trainer) for _ in range(2)]
 
 

@@ -23,12 +23,12 @@ from rclpy.node import Node
 
 from hexapod_agent import checkpoint, run_checkpoint
 from hexapod_agent.checkpoint import CheckpointError
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.graph_run import GraphRun
-from hexapod_agent.observation import ObservationSpec, parse_observations
+from hexapod_agent.observation import parse_observations
 from hexapod_agent.peers import Peers
 from hexapod_agent.player import Agent, Player
 from hexapod_agent.policies import trained_policy
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
 
 PARAMETERS = (
@@ -42,7 +42,7 @@ PARAMETERS = (
     ),
 )
 
-MakeTrainer = Callable[[ObservationSpec, AgentConfig, int], Trainer]
+MakeTrainer = Callable[[RunSpec, int], Trainer]
 
 
 class AgentNode(Node):
@@ -93,8 +93,8 @@ class AgentNode(Node):
         goal = goal_handle.request
         self._last_error = ''
         try:
-            spec, config, agent = trained(goal) if goal.checkpoint else self._untrained(goal)
-            self._run = GraphRun(self, goal_handle, spec, config, agent)
+            config, agent = trained(goal) if goal.checkpoint else self._untrained(goal)
+            self._run = GraphRun(self, goal_handle, config, agent)
             return await self._run.execute()
         except Exception as error:
             self._last_error = f'run {goal.run_id}: {error}'
@@ -103,20 +103,20 @@ class AgentNode(Node):
                 goal_handle.abort()
             return TrainRun.Result(message=str(error))
 
-    def _untrained(self, goal: TrainRun.Goal) -> tuple[ObservationSpec, AgentConfig, Trainer]:
-        spec = ObservationSpec(goal.observations)
-        config = AgentConfig.load(goal.config or self.get_parameter('config').value)
-        return spec, config, self._resumed(goal, spec, config)
+    def _untrained(self, goal: TrainRun.Goal) -> tuple[RunSpec, Trainer]:
+        config = RunSpec.load(goal.config or self.get_parameter('config').value)
+        config = config.observing(goal.observations)
+        return config, self._resumed(goal, config)
 
-    def _resumed(self, goal: TrainRun.Goal, spec: ObservationSpec, config: AgentConfig) -> Trainer:
+    def _resumed(self, goal: TrainRun.Goal, config: RunSpec) -> Trainer:
         """Return the trainer of the run's checkpoint, or one that begins."""
         trainer = None
         if goal.resume and goal.bag:
             try:
-                trainer = run_checkpoint.resumed(goal.bag, spec, config, goal.seed, goal.episodes)
+                trainer = run_checkpoint.resumed(goal.bag, config, goal.seed, goal.episodes)
             except CheckpointError as error:
                 self.get_logger().warning(f'run {goal.run_id} begins anew: {error}')
-        return trainer or self.make_trainer(spec, config, goal.seed)
+        return trainer or self.make_trainer(config, goal.seed)
 
     def _health(self) -> Health:
         if self._run is not None:
@@ -126,22 +126,22 @@ class AgentNode(Node):
         return DiagnosticStatus.OK, 'waiting for a run', {}
 
 
-def trained(goal: TrainRun.Goal) -> tuple[ObservationSpec, AgentConfig, Agent]:
+def trained(goal: TrainRun.Goal) -> tuple[RunSpec, Agent]:
     """Return the agent of the goal's checkpoint, and the configuration that it plays in.
 
     Raises:
         ValueError: the checkpoint cannot be read, or observes other channels than the goal says.
     """
     trainer = checkpoint.load(goal.checkpoint)
-    spec, config = trainer.spec, trainer.config
-    if goal.observations and parse_observations(goal.observations) != spec.letters:
+    config = trainer.config
+    if goal.observations and parse_observations(goal.observations) != config.letters:
         raise ValueError(
             f"observations '{goal.observations}': checkpoint '{goal.checkpoint}' observes "
-            f"'{spec.letters}', expected the same or none"
+            f"'{config.letters}', expected the same or none"
         )
     if goal.config:
         config = config.changed_by(goal.config)
-    return spec, config, Player(trained_policy(trainer.agent), config.training.window)
+    return config, Player(trained_policy(trainer.agent), config.training.window)
 
 
 def main(args: Sequence[str] | None = None) -> None:

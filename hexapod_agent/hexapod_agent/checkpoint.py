@@ -16,8 +16,7 @@ from typing import Any
 
 import torch
 
-from hexapod_agent.config import AgentConfig
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.sealed_file import Seal, read_seal, write_sealed
 from hexapod_agent.training import Trainer
 
@@ -43,9 +42,8 @@ def save(path: str | Path, trainer: Trainer, to_resume: bool) -> None:
     """
     content = {
         'format': FORMAT,
-        'observations': trainer.spec.letters,
         'seed': trainer.seed,
-        'config': trainer.config.to_mapping(),
+        'spec': trainer.config.to_mapping(),
         'state': trainer.state_dict(to_resume),
     }
     try:
@@ -63,8 +61,7 @@ def load(path: str | Path, to_resume: bool = False) -> Trainer:
     """
     content = _read(Path(path).expanduser())
     try:
-        config = AgentConfig.from_mapping(content['config'], 'its configuration')
-        trainer = Trainer(ObservationSpec(content['observations']), config, content['seed'])
+        trainer = Trainer(_spec(content), content['seed'])
         trainer.load_state_dict(content['state'])
     except Exception as error:  # of another version, or whatever a file without a seal may hold
         raise CheckpointError(
@@ -75,6 +72,14 @@ def load(path: str | Path, to_resume: bool = False) -> Trainer:
             f'checkpoint {str(path)!r} holds an agent alone, expected a run that can be resumed'
         )
     return trainer
+
+
+def _spec(content: Mapping[str, Any]) -> RunSpec:
+    """Return the run's specification; files of before there was one have it in two parts."""
+    if 'spec' in content:
+        return RunSpec.from_mapping(content['spec'], 'its specification')
+    config = RunSpec.from_mapping(content['config'], 'its configuration')
+    return config.observing(content['observations'])
 
 
 def _read(path: Path) -> Mapping[str, Any]:

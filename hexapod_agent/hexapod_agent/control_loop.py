@@ -18,10 +18,9 @@ from hexapod_node.stamps import time_message
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from numpy.typing import NDArray
 
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.messages import decode, outcome_from_message
-from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.player import Agent
+from hexapod_agent.run_spec import RunSpec
 
 if TYPE_CHECKING:
     from hexapod_node.stamp_gate import LockStepCounts
@@ -38,15 +37,15 @@ class ControlLoop:
         periods: Commands published so far.
     """
 
-    def __init__(self, node: AgentNode, spec: ObservationSpec, config: AgentConfig) -> None:
-        self._node, self._spec, self._config = node, spec, config
+    def __init__(self, node: AgentNode, config: RunSpec) -> None:
+        self._node, self._spec, self._config = node, config.observed, config
         self._command = CpgCommand()
         self._action = np.zeros(ACTION_SIZE, dtype=np.float32)
         self.periods = 0
         # The treatment: these topics and no other sensor.
         topics = {
             topic: message_class(channel.message_type)
-            for channel in spec.channels
+            for channel in self._spec.channels
             for topic in channel.topics
         }
         self._lock_step = LockStep(

@@ -13,9 +13,8 @@ from hexapod_cpg.mapping import ACTION_SIZE, Command, command_from_action
 from numpy.typing import NDArray
 
 from hexapod_agent import checkpoint
-from hexapod_agent.config import AgentConfig
-from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.policies import Policy, trained_policy
+from hexapod_agent.run_spec import RunSpec
 
 
 class DeployedAgent:
@@ -26,8 +25,8 @@ class DeployedAgent:
         config: What it was trained with.
     """
 
-    def __init__(self, spec: ObservationSpec, config: AgentConfig, policy: Policy) -> None:
-        self.spec = spec
+    def __init__(self, config: RunSpec, policy: Policy) -> None:
+        self.spec = config.observed
         self.config = config
         self._policy = policy
         self._action = np.zeros(ACTION_SIZE, dtype=np.float32)
@@ -45,7 +44,7 @@ class DeployedAgent:
         """
         trainer = checkpoint.load(path)
         config = trainer.config.changed_by(changes) if changes else trainer.config
-        return cls(trainer.spec, config, trained_policy(trainer.agent))
+        return cls(config, trained_policy(trainer.agent))
 
     def act(self, readings: Mapping[str, NDArray[np.float64]]) -> Command:
         """Return the command of one control period.

@@ -18,8 +18,8 @@ from hexapod_sim.task import LineTask, Outcome, episode_seed
 from hexapod_sim.viewer import has_display
 from numpy.typing import NDArray
 
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.observation import ObservationError, ObservationSpec
+from hexapod_agent.run_spec import RunSpec
 
 Observation = NDArray[np.float32]
 
@@ -104,10 +104,11 @@ class HexapodLine(gymnasium.Env[Observation, NDArray[np.float32]]):
     step, at the start the standing pose, `cause`.
 
     ## Arguments
-    `observations`: letters of the optional channels. `config`: an `AgentConfig`, the path of a
-    YAML file, or None for article.yaml. `render_mode`: None, `rgb_array` (`render()` draws
-    off-screen, which needs EGL), or `human` (a window in real time, where there is a display).
-    `width`, `height`: pixels of a picture. `camera`: `track` or `top`.
+    `observations`: letters of the optional channels, None for those of `config`. `config`: a
+    `RunSpec`, the path of a YAML file, or None for article.yaml. `render_mode`: None,
+    `rgb_array` (`render()` draws off-screen, which needs EGL), or `human` (a window in real
+    time, where there is a display). `width`, `height`: pixels of a picture. `camera`: `track` or
+    `top`.
 
     ## Copies
     `copy.deepcopy` and `pickle` give an environment that goes on as this one, to the last bit.
@@ -124,15 +125,16 @@ class HexapodLine(gymnasium.Env[Observation, NDArray[np.float32]]):
 
     def __init__(
         self,
-        observations: str = '',
-        config: AgentConfig | str | Path | None = None,
+        observations: str | None = None,
+        config: RunSpec | str | Path | None = None,
         render_mode: str | None = None,
         width: int = 480,
         height: int = 320,
         camera: str = 'track',
     ) -> None:
-        self.config = config if isinstance(config, AgentConfig) else AgentConfig.load(config)
-        self.observation_spec = ObservationSpec(observations)
+        spec = config if isinstance(config, RunSpec) else RunSpec.load(config)
+        self.config = spec if observations is None else spec.observing(observations)
+        self.observation_spec = self.config.observed
         self.task = LineTask(self.config.task)
         self.cpg = Cpg(self.config.cpg.hopf)
         self.observation_space = gymnasium.spaces.Box(

@@ -18,11 +18,11 @@ from rich.progress import Progress, track
 from rich.table import Table
 
 from hexapod_agent import checkpoint
-from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.constant_action import GENERATIONS, best_constant_action
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.evaluation import Episode, Evaluation, GraphError, run_episode, summarize
 from hexapod_agent.policies import Policy, constant_policy, random_policy, trained_policy
+from hexapod_agent.run_spec import ConfigError, RunSpec, add_spec_options
 
 _ROWS = (
     ('final average reward', 'final_average_reward', '.1f'),
@@ -43,7 +43,7 @@ def main(args: Sequence[str] | None = None) -> None:
         parser.error('--graph: expected a CHECKPOINT for the graph to play')
     if bool(options.checkpoint) == bool(options.policy):
         parser.error('expected either a CHECKPOINT or --policy')
-    if options.checkpoint and options.config:
+    if options.checkpoint and (options.config or options.set):
         parser.error('--config: a CHECKPOINT has its own, expected it with --policy only')
     try:
         name, subject = _subject(options)
@@ -69,9 +69,7 @@ def _parser() -> CommandLine:
         choices=('zero', 'random', 'constant'),
         help='a baseline instead; constant: the best constant action, searched for minutes',
     )
-    parser.add_argument(
-        '--config', type=file, help='configuration of the baseline; default article.yaml'
-    )
+    add_spec_options(parser)
     parser.add_argument(
         '--starts', type=whole(1, 1_000_000), default=50, help='episodes (default 50)'
     )
@@ -100,7 +98,7 @@ def _subject(options: argparse.Namespace) -> tuple[str, Iterator[Episode]]:
             return name, _on_graph(options)
         env, policy = HexapodLine(letters, trainer.config), trained_policy(trainer.agent)
         return name, _in_environment(env, policy, options)
-    env = HexapodLine('', AgentConfig.load(options.config))
+    env = HexapodLine('', RunSpec.load(options.config, options.set))
     if options.policy == 'random':
         return 'random actions', _in_environment(env, random_policy(options.seed), options)
     if options.policy == 'constant':

@@ -78,7 +78,8 @@ def policy_model(trainer: Trainer) -> onnx.ModelProto:
         }  # fmt: skip
     arrays = trainer.agent.actor_parameters.arrays
     weights = {name: array[0].numpy() for name, array in arrays.items()}
-    layers = _layers('input' if scale else 'observation', weights, trainer.config.actor.layer_norm)
+    norm = trainer.config.learner.actor.layer_norm
+    layers = _layers('input' if scale else 'observation', weights, norm)
     constants |= {
         name: np.ones(weights[name.replace('.gain', '.bias')].shape, np.float32)
         for node in layers

@@ -24,9 +24,9 @@ from hexapod_sim.film import (
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 
 from hexapod_agent import checkpoint
-from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.policies import Policy, constant_policy, trained_policy
+from hexapod_agent.run_spec import ConfigError, RunSpec
 
 _PERIODS_PER_FRAME = 2
 FRAMES_PER_SECOND = 1_000_000_000 // (CONTROL_PERIOD_NS * _PERIODS_PER_FRAME)
@@ -85,7 +85,7 @@ def _parser() -> CommandLine:
 def _subject(options: argparse.Namespace) -> tuple[HexapodLine, Policy]:
     """Environment and policy that the options ask for."""
     if not options.checkpoint:
-        config = AgentConfig.load(options.config)
+        config = RunSpec.load(options.config)
         return HexapodLine('', config), constant_policy(np.zeros(ACTION_SIZE, np.float32))
     trainer = checkpoint.load(options.checkpoint)
     config = trainer.config.changed_by(options.config) if options.config else trainer.config

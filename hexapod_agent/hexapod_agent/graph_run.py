@@ -12,7 +12,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import yaml
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import EpisodeResult
 from hexapod_node.conditions import until_true
@@ -26,13 +25,12 @@ from hexapod_sim.task import episode_seed
 
 from hexapod_agent import run_checkpoint
 from hexapod_agent.checkpoint import save
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.control_loop import OUTCOME, ControlLoop
 from hexapod_agent.event_log import EventLog
-from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.peers import PeerError
 from hexapod_agent.player import Agent
 from hexapod_agent.provenance import provenance
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
 
 if TYPE_CHECKING:
@@ -53,18 +51,16 @@ class GraphRun:
         self,
         node: AgentNode,
         goal_handle: ServerGoalHandle,
-        spec: ObservationSpec,
-        config: AgentConfig,
+        config: RunSpec,
         agent: Agent,
     ) -> None:
         self._node = node
         self._goal_handle = goal_handle
         self._goal: TrainRun.Goal = goal_handle.request
-        self._spec = spec
         self._config = config
         self._agent = agent
         self._events: EventLog | None = None
-        self._loop = ControlLoop(node, spec, config)
+        self._loop = ControlLoop(node, config)
         self._episode = 0
         self._last_ns = 0
         """End of the episodes that were carried over; simulated time goes on from there."""
@@ -124,7 +120,7 @@ class GraphRun:
                 f'run {goal.run_id} begins anew: no recording holds the {done} episodes before '
                 'its checkpoint'
             )
-            self._agent = self._node.make_trainer(self._spec, self._config, goal.seed)
+            self._agent = self._node.make_trainer(self._config, goal.seed)
         self._events = EventLog(Path(f'{goal.bag}.tensorboard'), kept)
         return kept
 
@@ -190,12 +186,12 @@ class GraphRun:
         node = self._node
         subscribed = subscribed_topics(node, node.get_name(), node.get_namespace())
         return given | {
-            'observations': self._spec.letters,
+            'observations': self._config.letters,
             'seed': str(self._goal.seed),
             'mode': 'play' if self._goal.checkpoint else 'train',
             'episodes': str(self._goal.episodes),
             'window': str(self._config.training.window),
-            'config': yaml.safe_dump(self._config.to_mapping(), sort_keys=False),
+            'spec': self._config.to_text(),
             'subscriptions': '\n'.join(subscribed),
             **provenance(),
         }

@@ -110,9 +110,10 @@ class DdpgConfig:
         updates = Fraction(str(self.update_ratio)) * self.update_every
         if updates.denominator != 1:
             raise ValueError(
-                f'ddpg.update_ratio is {self.update_ratio}, expected a multiple of '
+                f'learner.ddpg.update_ratio is {self.update_ratio}, expected a multiple of '
                 f'1/{self.update_every}: after each {self.update_every} steps '
-                f'(ddpg.update_every) comes a whole number of updates, not {float(updates):g}'
+                '(learner.ddpg.update_every) comes a whole number of updates, not '
+                f'{float(updates):g}'
             )
         return updates.numerator
 
@@ -134,6 +135,25 @@ class NoiseConfig:
     mean: _Value
     decay: _Share
     sigma_min: _Factor
+
+
+@dataclass(frozen=True)
+class LearnerConfig:
+    """What learns, and how.
+
+    Attributes:
+        algorithm: Whose sections count.
+        actor: The policy's network and its training.
+        critic: The action value's network and its training.
+        ddpg: The update.
+        noise: Exploration.
+    """
+
+    algorithm: Literal['ddpg']
+    actor: ActorConfig
+    critic: CriticConfig
+    ddpg: DdpgConfig
+    noise: NoiseConfig
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,7 @@ from pathlib import Path
 
 from hexapod_agent import checkpoint
 from hexapod_agent.checkpoint import CheckpointError
-from hexapod_agent.config import AgentConfig
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
 
 _SHOWN = 3  # differences that a message names
@@ -30,9 +29,7 @@ def keep(bag: str | Path, trainer: Trainer) -> None:
     checkpoint.save(checkpoint_path(bag), trainer, to_resume=True)
 
 
-def resumed(
-    bag: str | Path, spec: ObservationSpec, config: AgentConfig, seed: int, episodes: int
-) -> Trainer | None:
+def resumed(bag: str | Path, config: RunSpec, seed: int, episodes: int) -> Trainer | None:
     """Return a trainer that goes on where the run was at its checkpoint; None without one.
 
     Raises:
@@ -42,31 +39,29 @@ def resumed(
     if not path.exists():
         return None
     trainer = checkpoint.load(path, to_resume=True)
-    differences = different(trainer, spec, config, seed)
+    differences = different(trainer, config, seed)
     if trainer.episode >= episodes:
         differences.append(f'{trainer.episode} episodes have been, less than {episodes} expected')
     if differences:
         raise CheckpointError(
             f'checkpoint {str(path)!r}: of another run: {listed(differences)}; expected the same '
-            'sensors, seed and configuration, and less episodes'
+            'specification and seed, and less episodes'
         )
     return trainer
 
 
 def different(
-    trainer: Trainer,
-    spec: ObservationSpec | None = None,
-    config: AgentConfig | None = None,
-    seed: int | None = None,
+    trainer: Trainer, config: RunSpec | None = None, seed: int | None = None
 ) -> list[str]:
     """Return in what a run is another than the one that is asked for; None asks for nothing."""
     values: dict[str, tuple[object, object]] = {}
-    if spec is not None and spec.letters != trainer.spec.letters:
-        values['observations'] = (spec.letters, trainer.spec.letters)
     if seed is not None and seed != trainer.seed:
         values['seed'] = (seed, trainer.seed)
     if config is not None:
         values |= config.differences(trainer.config)
+        if config.letters != trainer.config.letters:
+            values = {k: v for k, v in values.items() if not k.startswith('observations.')}
+            values['observations'] = (config.letters, trainer.config.letters)
     return [f'{key} is {asked!r} here, {found!r} there' for key, (asked, found) in values.items()]
 
 

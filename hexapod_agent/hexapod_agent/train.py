@@ -11,15 +11,14 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from hexapod_sim.command_line import MOST_EPISODES, MOST_SEED, CommandLine, file, folder, whole
+from hexapod_sim.command_line import MOST_EPISODES, MOST_SEED, CommandLine, folder, whole
 
 from hexapod_agent import checkpoint
-from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.event_log import EventLog
-from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.progress import Report, episode_report
 from hexapod_agent.run_checkpoint import different, listed
+from hexapod_agent.run_spec import ConfigError, RunSpec, add_spec_options
 from hexapod_agent.summary import EpisodeSummary
 from hexapod_agent.training import Trainer, TrainingDivergedError
 
@@ -128,7 +127,7 @@ def _parser() -> CommandLine:
         type=whole(1, MOST_EPISODES),
         help="length of the run, with what it has had already; default of the run's configuration",
     )
-    parser.add_argument('--config', type=file, help='YAML file of changes to article.yaml')
+    add_spec_options(parser)
     parser.add_argument(
         '--out', type=folder, required=True, help='directory of log and checkpoints'
     )
@@ -149,9 +148,13 @@ def _trainer(options: argparse.Namespace) -> Trainer:
         return trainer
     if file.exists():
         raise ConfigError(f'{str(file)!r} exists, expected --resume or another --out')
-    config = AgentConfig.load(options.config)
-    spec = ObservationSpec(options.observations or '')
-    return Trainer(spec, config, 1 if options.seed is None else options.seed)
+    return Trainer(_spec(options), 1 if options.seed is None else options.seed)
+
+
+def _spec(options: argparse.Namespace) -> RunSpec:
+    """Return what the options ask for."""
+    spec = RunSpec.load(options.config, options.set)
+    return spec if options.observations is None else spec.observing(options.observations)
 
 
 def _check_same_run(options: argparse.Namespace, trainer: Trainer) -> None:
@@ -160,13 +163,14 @@ def _check_same_run(options: argparse.Namespace, trainer: Trainer) -> None:
     Raises:
         ConfigError: One of them says otherwise than the checkpoint.
     """
-    given = options.observations
-    differences = different(
-        trainer,
-        None if given is None else ObservationSpec(given),
-        None if options.config is None else AgentConfig.load(options.config),
-        options.seed,
-    )
+    asked: RunSpec | None = None
+    if options.config is not None or options.set:
+        asked = RunSpec.load(options.config, options.set)
+    if asked is None or not any(asked.observations.values()):  # neither says anything of them
+        asked = (asked or trainer.config).observing(trainer.config.letters)
+    if options.observations is not None:
+        asked = asked.observing(options.observations)
+    differences = different(trainer, asked, options.seed)
     if differences:
         raise ConfigError(
             f'--resume: the run in {str(options.out)!r} is another: {listed(differences)}; '

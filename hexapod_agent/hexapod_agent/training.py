@@ -19,12 +19,11 @@ from hexapod_sim.robot import CONTROL_PERIOD_NS
 from hexapod_sim.task import Outcome
 from numpy.typing import NDArray
 
-from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.ddpg import Ddpg
 from hexapod_agent.noise import OrnsteinUhlenbeckNoise
-from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.policies import trained_policy
 from hexapod_agent.replay import Batch, ReplayBuffer
+from hexapod_agent.run_spec import ConfigError, RunSpec
 from hexapod_agent.running_scale import RunningScale
 from hexapod_agent.summary import EpisodeRecord, EpisodeSummary
 
@@ -38,7 +37,7 @@ class Trainer:
 
     Attributes:
         spec: What the agent observes.
-        config: The run's configuration.
+        config: The run's specification.
         seed: Seed of everything random.
         agent: Networks and their update.
         episode: Episodes that are complete; a checkpoint is taken between two.
@@ -48,19 +47,20 @@ class Trainer:
         ConfigError: No episode is as long as a group of updates, or no batch fits into the buffer.
     """
 
-    def __init__(self, spec: ObservationSpec, config: AgentConfig, seed: int) -> None:
-        steps, group = config.task.time_limit_steps, config.ddpg.update_every
-        if group > steps:
+    def __init__(self, config: RunSpec, seed: int) -> None:
+        steps, ddpg = config.task.time_limit_steps, config.learner.ddpg
+        if ddpg.update_every > steps:
             raise ConfigError(
-                f'ddpg.update_every is {group}, expected at most task.time_limit_steps, {steps}: '
-                'nothing would be learned'
+                f'learner.ddpg.update_every is {ddpg.update_every}, expected at most '
+                f'task.time_limit_steps, {steps}: nothing would be learned'
             )
-        if config.ddpg.buffer_size <= config.ddpg.batch_size:
+        if ddpg.buffer_size <= ddpg.batch_size:
             raise ConfigError(
-                f'ddpg.buffer_size is {config.ddpg.buffer_size}, expected more than '
-                f'ddpg.batch_size, {config.ddpg.batch_size}: nothing would be learned'
+                f'learner.ddpg.buffer_size is {ddpg.buffer_size}, expected more than '
+                f'learner.ddpg.batch_size, {ddpg.batch_size}: nothing would be learned'
             )
-        self.spec, self.config, self.seed = spec, config, seed
+        self.config, self.seed = config, seed
+        self.spec = spec = config.observed
         # One thread: a sum split over threads is not the same to the last bit.
         torch.set_num_threads(1)
         precision = config.training.precision
@@ -68,9 +68,8 @@ class Trainer:
         init, noise, replay = np.random.SeedSequence(seed).spawn(3)
         self._replay_generator = np.random.default_rng(replay)
         self._noise_generator = np.random.default_rng(noise)
-        ddpg = config.ddpg
         self.agent = Ddpg(
-            spec.size, ACTION_SIZE, config.actor, config.critic, ddpg.batch_size,
+            spec.size, ACTION_SIZE, config.learner.actor, config.learner.critic, ddpg.batch_size,
             ddpg.target_smoothing, _torch_generator(init),
             hidden_dtype=torch.bfloat16 if precision == 'bfloat16' else None,
             scale=RunningScale(spec.size) if ddpg.normalize_observations else None,
@@ -80,7 +79,7 @@ class Trainer:
             ddpg.buffer_size, spec.size, ACTION_SIZE, ddpg.discount, ddpg.n_step
         )
         self._noise = OrnsteinUhlenbeckNoise(
-            config.noise, ACTION_SIZE, CONTROL_PERIOD_NS * 1e-9, self._noise_generator
+            config.learner.noise, ACTION_SIZE, CONTROL_PERIOD_NS * 1e-9, self._noise_generator
         )
         self.episode = 0
         self.returns: list[float] = []
@@ -92,7 +91,7 @@ class Trainer:
     @cached_property
     def _group(self) -> tuple[Batch, list[Batch]]:
         """The batches of a group of updates, all in all and one by one."""
-        ddpg = self.config.ddpg
+        ddpg = self.config.learner.ddpg
         sizes = (ddpg.batch_size, self.spec.size, ACTION_SIZE)
         drawn = Batch.empty(ddpg.group_size, *sizes, torch.float32)
         return drawn, [drawn.inner(number) for number in range(ddpg.group_size)]
@@ -165,7 +164,7 @@ class Trainer:
     @property
     def due(self) -> int:
         """Gradient steps to take now: a group of them, where it is time and there is a batch."""
-        config = self.config.ddpg
+        config = self.config.learner.ddpg
         is_time = (self._step + 1) % config.update_every == 0
         return config.group_size if is_time and len(self._replay) >= config.batch_size else 0
 
@@ -212,7 +211,7 @@ class Trainer:
         if self._action is None:
             self._replay.begin(observation)
             return
-        reward = outcome.reward * self.config.ddpg.reward_scale
+        reward = outcome.reward * self.config.learner.ddpg.reward_scale
         self._replay.add(self._action, reward, observation, outcome.terminated)
         self._record.add_outcome(outcome)
 

@@ -50,7 +50,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f'run_case: {row.run_id} is trained anew: {state.damage}', file=sys.stderr)
     try:
         with campaign_lock(plan.resolve().parent, shared=True), row_lock(row.bag):
-            keep_config(plan.resolve().parent, args.hyperparameters)
+            keep_config(plan.resolve().parent, args.config)
             return _train(row, settings, args.stall)
     except (ValueError, OSError) as error:
         print(f'run_case: {one_line(error)}', file=sys.stderr)
@@ -58,7 +58,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _settings(args: argparse.Namespace) -> RunSettings:
-    config = str(args.hyperparameters.resolve(strict=True)) if args.hyperparameters else ''
+    config = str(args.config.resolve(strict=True)) if args.config else ''
     return RunSettings(args.episodes, config, args.record_every)
 
 
@@ -99,7 +99,7 @@ def parser() -> CommandLine:
     made.add_argument('--plan', type=file, required=True, help='plan.csv of the campaign')
     made.add_argument('--row', type=whole(ge=1), required=True, help='StdOrder of the row')
     made.add_argument('--out', type=folder, help="the campaign's folder; default that of the plan")
-    made.add_argument('--hyperparameters', type=file, help='changes to article.yaml')
+    made.add_argument('--config', type=file, help='changes to article.yaml')
     made.add_argument('--episodes', type=whole(ge=1), default=1000, help='default %(default)s')
     made.add_argument(
         '--record-every',

@@ -15,13 +15,13 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import torch
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.fleet.crew import Crew
 from hexapod_agent.fleet.fleet import Fleet
 from hexapod_agent.fleet.learners import Learners, SeparateLearners
 from hexapod_agent.fleet.robots import Robots
 from hexapod_agent.fleet.stacked import StackedLearners
 from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.run_spec import RunSpec, add_spec_options
 from hexapod_sim.command_line import CommandLine, file, folder, one_line, whole
 
 from hexapod_doe.campaigns.campaign import Campaign, shared_settings
@@ -49,7 +49,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def build_fleet(
-    config: AgentConfig, letters: Sequence[str], slots: int, crew: Crew, device: str
+    config: RunSpec, letters: Sequence[str], slots: int, crew: Crew, device: str
 ) -> Fleet:
     """Make a fleet for runs with such sets of observations.
 
@@ -81,7 +81,7 @@ def _interruptible() -> Iterator[None]:
 
 
 def _run(args: argparse.Namespace) -> int:
-    config = AgentConfig.load(args.hyperparameters)
+    config = RunSpec.load(args.config, args.set)
     plan = place_plan(args.plan, args.out)
     directory = plan.resolve().parent
     with campaign_lock(directory, shared=True):
@@ -91,7 +91,7 @@ def _run(args: argparse.Namespace) -> int:
         for run_id, damage in campaign.damaged.items():
             print(f'run_fleet: {run_id} is trained anew: {damage}', file=sys.stderr)
         campaign.check_writable()
-        keep_config(directory, args.hyperparameters)
+        keep_config(directory, args.config)
         due = [row.observations for row in campaign.rows if row.run_id not in campaign.done]
         processes = args.processes or (_CORES if is_cpu(args.device) else 1)
         if processes > 1 and due:
@@ -107,21 +107,18 @@ def _run(args: argparse.Namespace) -> int:
 
 def _options(plan: Path, args: argparse.Namespace, count: int, due: Sequence[str]) -> list[str]:
     """Return the command line of one of several processes."""
-    names = ('episodes', 'hyperparameters', 'slots', 'threads', 'device', 'began')
+    names = ('episodes', 'config', 'slots', 'threads', 'device', 'began')
     given = {'plan': plan} | {name: getattr(args, name) for name in names}
     if not is_cpu(args.device):  # its rows and the cores are shared out evenly
         given['slots'] = args.slots or math.ceil(len(due) / count)
         given['threads'] = args.threads or max(_CORES // count, 1)
-    return [
-        text
-        for name, value in given.items()
-        if value is not None
-        for text in (f'--{name}', str(value))
-    ]
+    options = [(name, value) for name, value in given.items() if value is not None]
+    options += [('set', setting) for setting in args.set]
+    return [text for name, value in options for text in (f'--{name}', str(value))]
 
 
 def _train(
-    campaign: Campaign, config: AgentConfig, due: Sequence[str], args: argparse.Namespace
+    campaign: Campaign, config: RunSpec, due: Sequence[str], args: argparse.Namespace
 ) -> None:
     """Train rows with such sets of observations in this process."""
     episodes = args.episodes or config.training.episodes
@@ -144,9 +141,7 @@ def _parser() -> CommandLine:
     parser.add_argument(
         '--episodes', type=whole(ge=1), help='of a training; default of article.yaml'
     )
-    parser.add_argument(
-        '--hyperparameters', type=file, help='YAML file of changes to article.yaml'
-    )
+    add_spec_options(parser)
     parser.add_argument(
         '--processes', type=whole(ge=1),
         help='default one per core on the CPU, one in all on another device',

@@ -19,9 +19,9 @@ import time
 from pathlib import Path
 
 import torch
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.replay import Batch
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
 from hexapod_cpg.mapping import ACTION_SIZE
 from hexapod_doe.campaigns.folder import read_progress
@@ -69,9 +69,11 @@ def episodes_per_second(directory: Path, workers: int) -> float:
 
 def learn() -> None:
     """Print how many updates a second one learner makes."""
-    spec, config = ObservationSpec('ABCDE'), AgentConfig.load()
+    spec, config = ObservationSpec('ABCDE'), RunSpec.load()
     agent = Trainer(spec, config, 1).agent
-    batch = Batch.empty(1, config.ddpg.batch_size, spec.size, ACTION_SIZE, torch.float32).inner(0)
+    batch = Batch.empty(
+        1, config.learner.ddpg.batch_size, spec.size, ACTION_SIZE, torch.float32
+    ).inner(0)
     for tensor in vars(batch).values():
         tensor.uniform_(-1.0, 1.0)
     updates, began = 0, time.perf_counter()

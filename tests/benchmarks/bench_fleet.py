@@ -30,11 +30,10 @@ from pathlib import Path
 
 import yaml
 from bench_graph import Client
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.fleet.crew import Crew
 from hexapod_agent.fleet.stopwatch import Stopwatch
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.summary import EpisodeSummary
 from hexapod_agent.train import train_episode
 from hexapod_agent.training import Trainer
@@ -83,8 +82,8 @@ class Speed:
 
 def new_trainer(seed: int) -> Trainer:
     """A run that has yet to begin."""
-    config = AgentConfig.from_mapping(CHANGES, 'bench_fleet')
-    return Trainer(ObservationSpec(OBSERVATIONS), config, seed)
+    config = RunSpec.from_mapping(CHANGES, 'bench_fleet')
+    return Trainer(config.observing(OBSERVATIONS), seed)
 
 
 def one_run(seed: int = 1) -> Speed:

@@ -17,8 +17,8 @@ from pathlib import Path
 
 import numpy as np
 import rclpy
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.env import HexapodLine
+from hexapod_agent.run_spec import RunSpec
 from hexapod_cpg.mapping import ACTION_SIZE
 from hexapod_interfaces.action import TrainRun
 from rclpy.action import ActionClient
@@ -37,7 +37,7 @@ TARGETS = {'environment': 4000, 'composed worker': 2000, 'four processes': 700}
 
 def environment() -> float:
     """Return periods per second of the bare environment."""
-    env = HexapodLine(OBSERVATIONS, AgentConfig.load())
+    env = HexapodLine(OBSERVATIONS, RunSpec.load())
     action = np.zeros(ACTION_SIZE, dtype=np.float32)
     periods = 0
     began = time.perf_counter()

@@ -14,9 +14,8 @@ from collections.abc import Callable
 
 import numpy as np
 import torch
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.env import HexapodLine
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
 from hexapod_cpg.mapping import ACTION_SIZE
 from rich.console import Console
@@ -69,8 +68,8 @@ def matrix_products(batch: int, sizes: tuple[int, int, int, int]) -> Callable[[]
 
 def full_trainer(precision: str, letters: str = 'ABCDE') -> tuple[Trainer, HexapodLine]:
     """A trainer with a group of updates due, and its environment."""
-    config = AgentConfig.from_mapping({'training': {'precision': precision}}, 'benchmark')
-    trainer, env = Trainer(ObservationSpec(letters), config, 1), HexapodLine(letters, config)
+    config = RunSpec.from_mapping({'training': {'precision': precision}}, 'benchmark')
+    trainer, env = Trainer(config.observing(letters), 1), HexapodLine(letters, config)
     observation, _ = env.reset(seed=1)
     trainer.begin_episode(0)
     for _ in range(config.task.time_limit_steps):
@@ -81,13 +80,14 @@ def full_trainer(precision: str, letters: str = 'ABCDE') -> tuple[Trainer, Hexap
 def time_baseline(trainer: Trainer, env: HexapodLine) -> float:
     """One gradient step of stable-baselines3's DDPG with the same layers and batch."""
     config, group = trainer.config, trainer.due
-    layers = {'pi': list(config.actor.hidden), 'qf': list(config.critic.hidden)}
+    learner = config.learner
+    layers = {'pi': list(learner.actor.hidden), 'qf': list(learner.critic.hidden)}
     model = stable_baselines3.DDPG(
-        'MlpPolicy', env, batch_size=config.ddpg.batch_size, buffer_size=2000, device='cpu',
+        'MlpPolicy', env, batch_size=learner.ddpg.batch_size, buffer_size=2000, device='cpu',
         policy_kwargs={'net_arch': layers}, learning_starts=100, seed=1,
     )  # fmt: skip
     model.learn(600)
-    batch = config.ddpg.batch_size
+    batch = config.learner.ddpg.batch_size
     return milliseconds(lambda: model.train(gradient_steps=group, batch_size=batch), 3) / group
 
 
@@ -99,8 +99,8 @@ def main() -> None:
         trainer.learn()
         updates[precision] = milliseconds(trainer.learn, 3) / trainer.due
     config = trainer.config
-    sizes = (trainer.spec.size, *config.actor.hidden, ACTION_SIZE)
-    multiply = matrix_products(config.ddpg.batch_size, sizes)
+    sizes = (trainer.spec.size, *config.learner.actor.hidden, ACTION_SIZE)
+    multiply = matrix_products(config.learner.ddpg.batch_size, sizes)
     references = {'its matrix products alone, float32_fast': milliseconds(multiply)}
     torch.set_float32_matmul_precision('highest')
     references["the same by torch's default, float32"] = milliseconds(multiply)

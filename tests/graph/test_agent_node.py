@@ -12,9 +12,9 @@ import pytest
 import torch
 import yaml
 from hexapod_agent.agent_node import AgentNode
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.train import train_episode
 from hexapod_agent.training import Trainer
 from hexapod_cpg.cpg_node import CpgNode
@@ -97,8 +97,8 @@ def test_a_seed_gives_the_same_weights_on_the_graph_and_in_the_environment(
     graph.add(SimNode(), CpgNode(), AgentNode(make_trainer))
     goal = TrainRun.Goal(run_id='r', observations='ABCDE', seed=7, episodes=3, config=path)
     response = graph.train(goal)
-    config = AgentConfig.load(path)
-    alone = Trainer(ObservationSpec('ABCDE'), config, 7)
+    config = RunSpec.load(path)
+    alone = Trainer(config.observing('ABCDE'), 7)
     env = HexapodLine('ABCDE', config)
     for _ in range(3):
         train_episode(env, alone)
@@ -220,8 +220,8 @@ def test_a_joint_driver_may_have_its_own_order_and_more_joints(graph, short: str
     graph.add(Faulty('joint_states', reorder), CpgNode(), AgentNode())
     goal = TrainRun.Goal(run_id='r', observations='', seed=1, episodes=1, config=short)
     response = graph.train(goal)
-    config = AgentConfig.load(short)
-    in_order = Trainer(ObservationSpec(''), config, 1)
+    config = RunSpec.load(short)
+    in_order = Trainer(config.observing(''), 1)
     train_episode(HexapodLine('', config), in_order)
     assert response.result.final_average_reward == in_order.average_return
 

@@ -7,9 +7,8 @@ from __future__ import annotations
 
 import pytest
 from hexapod_agent.agent_node import AgentNode
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.env import HexapodLine
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.train import train_episode
 from hexapod_agent.training import Trainer
 from hexapod_cpg.cpg_node import CpgNode
@@ -68,8 +67,8 @@ def plain(tmp_path) -> list[float]:
     """Return what the same run earns without drivers, and without ROS."""
     path = tmp_path / 'plain.yaml'
     path.write_text(SMALL)
-    config = AgentConfig.load(str(path))
-    trainer, env = Trainer(ObservationSpec('C'), config, 3), HexapodLine('C', config)
+    config = RunSpec.load(str(path))
+    trainer, env = Trainer(config.observing('C'), 3), HexapodLine('C', config)
     return [train_episode(env, trainer).episode_return for _ in range(2)]
 
 

@@ -12,9 +12,9 @@ from pathlib import Path
 import pandas as pd
 import pytest
 from hexapod_agent.agent_node import AgentNode
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.fleet.crew import Crew
 from hexapod_agent.run_checkpoint import checkpoint_path
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer, TrainingDivergedError
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_doe.bags.run_record import read_run
@@ -71,7 +71,7 @@ def in_fleet(config: Path) -> Callable[[Row], Exception | None]:
     """Return a function that has a fleet train a row; what it returns is why that failed."""
 
     def train(row: Row) -> Exception | None:
-        watch, settings = Quiet(), AgentConfig.load(config)
+        watch, settings = Quiet(), RunSpec.load(config)
         with Crew(2) as crew:
             fleet = build_fleet(settings, [row.observations], 1, crew, 'cpu')
             runs = iter([FleetRow(row, settings, EPISODES, 'cpu', watch)])

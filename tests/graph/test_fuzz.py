@@ -15,9 +15,8 @@ from typing import Any
 import numpy as np
 import pytest
 from hexapod_agent.agent_node import AgentNode
-from hexapod_agent.config import AgentConfig
-from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.play_node import PlayNode
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_cpg.mapping import ActionRanges, command_from_action
@@ -211,7 +210,7 @@ class Inputs:
 @pytest.fixture
 def ros_args(tmp_path, request) -> list[str]:
     """Return arguments for an untrained agent of all channels, in real time if the test says."""
-    trainer = Trainer(ObservationSpec(LETTERS), AgentConfig.from_mapping(SMALL, 'small'), 5)
+    trainer = Trainer(RunSpec.from_mapping(SMALL, 'small').observing(LETTERS), 5)
     checkpoint.save(tmp_path / 'agent.pt', trainer, to_resume=False)
     given = [f'checkpoint:={tmp_path}/agent.pt', 'check_seconds:=0.0']
     given += [f'{p.name}:=0.5' for p in real_time.PARAMETERS if p.name.startswith('max_age')]

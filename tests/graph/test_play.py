@@ -9,9 +9,8 @@ import json
 
 import pytest
 from hexapod_agent.agent_node import AgentNode
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.env import HexapodLine
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
@@ -32,7 +31,7 @@ SMALL = {
 @pytest.fixture
 def path(tmp_path) -> str:
     """Return an untrained checkpoint of the channels B and C."""
-    trainer = Trainer(ObservationSpec('BC'), AgentConfig.from_mapping(SMALL, 'small'), 5)
+    trainer = Trainer(RunSpec.from_mapping(SMALL, 'small').observing('BC'), 5)
     # Weights large enough that the observation decides the action.
     trainer.agent.actor_parameters.flat.mul_(4.0)
     checkpoint.save(tmp_path / 'agent.pt', trainer, to_resume=False)

@@ -10,9 +10,8 @@ import time
 import numpy as np
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray
-from hexapod_agent.config import AgentConfig
-from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.play_node import PlayNode
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_cpg.locomotion import Motion
@@ -37,7 +36,7 @@ AGES = [f'{p.name}:=1.0' for p in real_time.PARAMETERS if p.name.startswith('max
 @pytest.fixture
 def ros_args(tmp_path) -> list[str]:
     """Return arguments for real time and an untrained agent of the channels C and F."""
-    trainer = Trainer(ObservationSpec('CF'), AgentConfig.from_mapping(SMALL, 'small'), 5)
+    trainer = Trainer(RunSpec.from_mapping(SMALL, 'small').observing('CF'), 5)
     checkpoint.save(tmp_path / 'agent.pt', trainer, to_resume=False)
     given = ['sync:=realtime', f'checkpoint:={tmp_path}/agent.pt', 'check_seconds:=0.2', *AGES]
     given += ['max_age:=1.0']

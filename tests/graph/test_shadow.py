@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hexapod_agent.agent_node import AgentNode
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.policies import trained_policy
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_doe.bags.bag_file import BagFile
@@ -43,7 +43,7 @@ SMALL = {
 
 def save_agent(path: Path, letters: str, seed: int) -> Path:
     """Save an untrained agent whose observation decides its action."""
-    trainer = Trainer(ObservationSpec(letters), AgentConfig.from_mapping(SMALL, 'small'), seed)
+    trainer = Trainer(RunSpec.from_mapping(SMALL, 'small').observing(letters), seed)
     trainer.agent.actor_parameters.flat.mul_(4.0)
     checkpoint.save(path, trainer, to_resume=False)
     return path

@@ -10,13 +10,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import pytest
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.contract.limits import Limits, parse_frames
 from hexapod_agent.contract.messages import listen_and_check
 from hexapod_agent.contract.report import SensorReport
 from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.play_node import PlayNode
 from hexapod_agent.real_time import State
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_cpg.locomotion import Motion
@@ -175,7 +175,7 @@ def pace() -> float:
 @pytest.fixture
 def ros_args(tmp_path, swapped, pace: float) -> list[str]:
     """Return arguments for real time, an untrained agent of all channels, and the swaps."""
-    trainer = Trainer(ObservationSpec(LETTERS), AgentConfig.from_mapping(SMALL, 'small'), 5)
+    trainer = Trainer(RunSpec.from_mapping(SMALL, 'small').observing(LETTERS), 5)
     checkpoint.save(tmp_path / 'agent.pt', trainer, to_resume=False)
     given = {
         'checkpoint': f'{tmp_path}/agent.pt',

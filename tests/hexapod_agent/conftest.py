@@ -4,13 +4,12 @@
 """Small runs that several test modules train."""
 
 import pytest
-from hexapod_agent.config import AgentConfig
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
 
 
 @pytest.fixture(scope='session')
-def small_config() -> AgentConfig:
+def small_config() -> RunSpec:
     """Episodes of 40 steps, tiny networks."""
     changes = {
         'task': {'time_limit_steps': 40},
@@ -19,11 +18,11 @@ def small_config() -> AgentConfig:
         'ddpg': {'batch_size': 16, 'buffer_size': 5000, 'update_every': 8},
         'noise': {'decay': 1e-4},
     }
-    return AgentConfig.from_mapping(changes, 'small_config')
+    return RunSpec.from_mapping(changes, 'small_config')
 
 
 @pytest.fixture(scope='session')
-def switched_config(small_config) -> AgentConfig:
+def switched_config(small_config) -> RunSpec:
     """Small, with every switch of the learner on."""
     changes = {
         'actor': {'layer_norm': True},
@@ -36,9 +35,7 @@ def switched_config(small_config) -> AgentConfig:
 
 @pytest.fixture
 def make_trainer(small_config):
-    def make(
-        observations: str = 'BC', seed: int = 5, config: AgentConfig = small_config
-    ) -> Trainer:
-        return Trainer(ObservationSpec(observations), config, seed)
+    def make(observations: str = 'BC', seed: int = 5, config: RunSpec = small_config) -> Trainer:
+        return Trainer(config.observing(observations), seed)
 
     return make

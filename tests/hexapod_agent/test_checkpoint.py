@@ -207,10 +207,12 @@ def test_configuration_of_another_version_is_refused(make_trainer, tmp_path, mon
     path = tmp_path / 'a.pt'
     trainer = make_trainer()
     content = trainer.config.to_mapping()
-    content['ddpg']['momentum'] = 0.9
+    content['learner']['ddpg']['momentum'] = 0.9
     monkeypatch.setattr(type(trainer.config), 'to_mapping', lambda config: content)
     checkpoint.save(path, trainer, to_resume=False)
-    with pytest.raises(checkpoint.CheckpointError, match=r"a.pt.*cannot be used.*'ddpg.momentum'"):
+    with pytest.raises(
+        checkpoint.CheckpointError, match=r"a.pt.*cannot be used.*'learner.ddpg.momentum'"
+    ):
         checkpoint.load(path)
 
 

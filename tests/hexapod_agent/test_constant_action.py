@@ -5,11 +5,11 @@
 
 import numpy as np
 import pytest
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.constant_action import best_constant_action
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.evaluation import run_episode
 from hexapod_agent.policies import constant_policy
+from hexapod_agent.run_spec import RunSpec
 
 from hexapod_agent import constant_action
 
@@ -20,7 +20,7 @@ def env(monkeypatch) -> HexapodLine:
     monkeypatch.setattr(constant_action, 'GENERATIONS', 3)
     monkeypatch.setattr(constant_action, 'POPULATION', 8)
     monkeypatch.setattr(constant_action, '_SEARCH_STARTS', 1)
-    return HexapodLine('', AgentConfig.from_mapping({'task': {'time_limit_steps': 160}}, 'test'))
+    return HexapodLine('', RunSpec.from_mapping({'task': {'time_limit_steps': 160}}, 'test'))
 
 
 def test_found_action_earns_more_than_the_zero_action_on_other_starts(env):

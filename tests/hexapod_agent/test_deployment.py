@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.deployment import DeployedAgent
 from hexapod_agent.observation import ObservationError, ObservationSpec
 from hexapod_agent.policies import trained_policy
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
 from hexapod_cpg.mapping import ACTION_SIZE, COMMAND_FIELDS, ActionRanges, command_from_action
 
@@ -23,7 +23,7 @@ SMALL = {'actor': {'hidden': [16, 12]}, 'critic': {'hidden': [16, 12]}}
 
 @pytest.fixture
 def path(tmp_path) -> str:
-    trainer = Trainer(ObservationSpec('E'), AgentConfig.from_mapping(SMALL, 'small'), 5)
+    trainer = Trainer(RunSpec.from_mapping(SMALL, 'small').observing('E'), 5)
     trainer.agent.actor_parameters.flat.mul_(4.0)
     checkpoint.save(tmp_path / 'agent.pt', trainer, to_resume=False)
     return str(tmp_path / 'agent.pt')

@@ -38,7 +38,7 @@ def trainer(make_trainer, request):
         for _ in range(9):
             made.agent.scale.add(generator.normal(0.1, 0.3, made.spec.size).astype(np.float32))
         made.agent.scale.refresh()
-    if made.config.actor.layer_norm:  # which undoes the scale of all but the last layer
+    if made.config.learner.actor.layer_norm:  # which undoes the scale of all but the last layer
         made.agent.actor_parameters.arrays['output.weight'].mul_(32.0)
     return made
 

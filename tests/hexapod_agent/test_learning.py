@@ -7,11 +7,10 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.evaluation import Evaluation, run_episode, summarize
-from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.policies import Policy, constant_policy, trained_policy
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.train import train_episode
 from hexapod_agent.training import Trainer
 
@@ -26,9 +25,9 @@ def evaluate(env: HexapodLine, policy: Policy) -> Evaluation:
 @pytest.mark.timeout(3600)
 @pytest.mark.parametrize(('name', 'episodes'), [('', 60), ('swift.yaml', 100)])
 def test_short_training_steers_and_the_constant_action_does_not(name, episodes):
-    config = AgentConfig.load(files('hexapod_agent') / name if name else None)
+    config = RunSpec.load(files('hexapod_agent') / name if name else None)
     env = HexapodLine('ABCDE', config)
-    trainer = Trainer(ObservationSpec('ABCDE'), config, seed=1)
+    trainer = Trainer(config.observing('ABCDE'), seed=1)
     summaries = [train_episode(env, trainer) for _ in range(episodes)]
     learned = evaluate(env, trained_policy(trainer.agent))
     constant = evaluate(env, constant_policy(np.zeros(30, np.float32)))

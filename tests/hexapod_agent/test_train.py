@@ -99,7 +99,7 @@ def test_the_home_folder_is_known(config_file, tmp_path, monkeypatch):
     [
         (('--observations', 'ABCDE'), "observations is 'ABCDE' here, 'BC' there"),
         (('--seed', 9), 'seed is 9 here, 1 there'),
-        (('--config', 'other'), r'ddpg\.discount is 0\.9 here, 0\.99 there'),
+        (('--config', 'other'), r'learner\.ddpg\.discount is 0\.9 here, 0\.99 there'),
         (('--episodes', 1), '--episodes is 1, but the run .* has had 2, expected at least as'),
     ],
 )
@@ -108,7 +108,7 @@ def test_a_resumed_run_stays_the_run_that_it_is(config_file, tmp_path, capsys, a
     run('--observations', 'BC', '--episodes', 2, '--config', config_file, '--out', out)
     before = {path.name: path.read_bytes() for path in out.iterdir() if path.is_file()}
     mapping = yaml.safe_load(config_file.read_text())
-    mapping['ddpg']['discount'] = 0.9
+    mapping.setdefault('learner', {}).setdefault('ddpg', {})['discount'] = 0.9
     other = tmp_path / 'other.yaml'
     other.write_text(yaml.safe_dump(mapping))
     with pytest.raises(SystemExit) as stopped:

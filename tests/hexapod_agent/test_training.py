@@ -6,10 +6,9 @@
 import numpy as np
 import pytest
 import torch
-from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.env import HexapodLine
-from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.replay import Batch
+from hexapod_agent.run_spec import ConfigError, RunSpec
 from hexapod_agent.train import train_episode
 from hexapod_agent.training import Trainer, TrainingDivergedError
 from hexapod_cpg.mapping import ACTION_SIZE
@@ -59,7 +58,7 @@ def test_summary_adds_up(make_trainer):
 def test_updates_come_in_groups_by_their_ratio(small_config, update_every, ratio, group):
     ddpg = {'batch_size': 1, 'update_every': update_every, 'update_ratio': ratio}
     config = small_config.changed({'ddpg': ddpg}, 'a test')
-    trainer = Trainer(ObservationSpec('BC'), config, 1)
+    trainer = Trainer(config.observing('BC'), 1)
     play(trainer, [1.0])  # so that the first group of the next episode finds a batch
     trainer.begin_episode(1)
     due = []
@@ -73,7 +72,7 @@ def test_updates_come_in_groups_by_their_ratio(small_config, update_every, ratio
 
 def test_learning_rates_fall_evenly_to_the_last_episode(small_config):
     training = {'training': {'episodes': 5, 'final_rate': 0.2}}
-    trainer = Trainer(ObservationSpec(''), small_config.changed(training, 'a test'), 1)
+    trainer = Trainer(small_config.changed(training, 'a test').observing(''), 1)
     shares = []
     for trainer.episode in range(7):
         shares.append(trainer.rate_share)
@@ -84,7 +83,7 @@ def test_a_falling_rate_moves_the_weights_less(small_config):
     moved = []
     for rate in (1.0, 0.0):
         training = {'training': {'episodes': 2, 'final_rate': rate}}
-        trainer = Trainer(ObservationSpec(''), small_config.changed(training, 'a test'), 1)
+        trainer = Trainer(small_config.changed(training, 'a test').observing(''), 1)
         env = HexapodLine('', trainer.config)
         train_episode(env, trainer)
         before = weights(trainer).clone()
@@ -95,9 +94,9 @@ def test_a_falling_rate_moves_the_weights_less(small_config):
 
 
 def test_episodes_shorter_than_a_group_are_refused():
-    config = AgentConfig.from_mapping({'task': {'time_limit_steps': 20}}, 'a test')
+    config = RunSpec.from_mapping({'task': {'time_limit_steps': 20}}, 'a test')
     with pytest.raises(ConfigError, match=r'update_every is 24.* at most.* 20: nothing'):
-        Trainer(ObservationSpec(''), config, 1)
+        Trainer(config.observing(''), 1)
 
 
 def test_window_of_the_average_return(make_trainer):
@@ -118,8 +117,8 @@ def test_actions_are_within_bounds_and_noisy(make_trainer):
 
 def test_reward_is_scaled_for_the_critic_and_not_for_the_report(small_config):
     ddpg = {'ddpg': {'reward_scale': 0.5, 'batch_size': 16, 'update_every': 1}}
-    config = AgentConfig.from_mapping(small_config.to_mapping() | ddpg, 'a test')
-    trainer = Trainer(ObservationSpec('BC'), config, 1)
+    config = RunSpec.from_mapping(small_config.to_mapping() | ddpg, 'a test')
+    trainer = Trainer(config.observing('BC'), 1)
     play(trainer, [2.0] * 20)
     batch = Batch.empty(1, 50, trainer.spec.size, ACTION_SIZE, torch.float32)
     trainer.sample(batch)

@@ -14,9 +14,8 @@ import numpy as np
 import pytest
 import torch
 import yaml
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.env import HexapodLine
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.train import train_episode
 from hexapod_agent.training import Trainer, TrainingDivergedError
 from hexapod_doe.bags.digest import digest
@@ -59,7 +58,7 @@ def plan_file(hyperparameters) -> Path:
 @pytest.fixture
 def arguments(hyperparameters, plan_file):
     def make(out: Path, **options: object) -> list[str]:
-        given = {'plan': plan_file, 'out': out, 'hyperparameters': hyperparameters}
+        given = {'plan': plan_file, 'out': out, 'config': hyperparameters}
         given |= {'episodes': EPISODES, 'processes': 1, 'threads': 2} | options
         return [text for name, value in given.items() for text in (f'--{name}', str(value))]
 
@@ -70,7 +69,7 @@ def arguments(hyperparameters, plan_file):
 def digests(tmp_path_factory, hyperparameters, plan_file) -> dict[str, str]:
     """Digest of each bag of the undisturbed campaign, by run."""
     out = tmp_path_factory.mktemp('whole')
-    options = ['--episodes', str(EPISODES), '--hyperparameters', str(hyperparameters)]
+    options = ['--episodes', str(EPISODES), '--config', str(hyperparameters)]
     assert run_fleet.main(['--plan', str(plan_file), '--out', str(out), *options]) == 0
     return campaign_digests(out)
 
@@ -81,11 +80,11 @@ def campaign_digests(directory: Path) -> dict[str, str]:
 
 def test_rows_equal_those_trained_alone(arguments, hyperparameters, tmp_path):
     assert run_fleet.main(arguments(tmp_path, slots=3)) == 0
-    config = AgentConfig.load(hyperparameters)
+    config = RunSpec.load(hyperparameters)
     rows = Campaign.open(tmp_path / 'plan.csv').rows
     assert len(rows) == 4
     for row in rows:
-        trainer = Trainer(ObservationSpec(row.observations), config, row.seed)
+        trainer = Trainer(config.observing(row.observations), row.seed)
         env = HexapodLine(row.observations, config)
         alone = [train_episode(env, trainer) for _ in range(EPISODES)]
         verify(row.bag)
@@ -161,7 +160,7 @@ def test_another_plan_in_the_folder_is_refused(arguments, tmp_path, capsys):
 
 def test_checkpoint_of_other_hyperparameters_is_no_beginning(arguments, digests, tmp_path, capsys):
     row = Campaign.open(place_plan(Path(arguments(tmp_path)[1]), tmp_path)).rows[0]
-    trainer = Trainer(ObservationSpec(row.observations), AgentConfig.load(), row.seed)
+    trainer = Trainer(RunSpec.load().observing(row.observations), row.seed)
     run_checkpoint.keep(row.bag, trainer)
     assert run_fleet.main(arguments(tmp_path)) == 0
     assert f'run {row.run_id} begins anew' in capsys.readouterr().out
@@ -172,8 +171,8 @@ def test_row_with_a_damaged_checkpoint_begins_anew(
     arguments, hyperparameters, digests, tmp_path, capsys
 ):
     row = Campaign.open(place_plan(Path(arguments(tmp_path)[1]), tmp_path)).rows[0]
-    config = AgentConfig.load(hyperparameters)
-    trainer = Trainer(ObservationSpec(row.observations), config, row.seed)
+    config = RunSpec.load(hyperparameters)
+    trainer = Trainer(config.observing(row.observations), row.seed)
     train_episode(HexapodLine(row.observations, config), trainer)
     run_checkpoint.keep(row.bag, trainer)
     path = run_checkpoint.checkpoint_path(row.bag)
@@ -219,8 +218,10 @@ def diverge(trainer: Trainer) -> None:
 
 def test_row_that_fails_is_tried_by_one_of_the_processes(arguments, tmp_path, capsys):
     settings = tmp_path / 'steep.yaml'
-    settings.write_text(yaml.safe_dump(SMALL | {'ddpg': SMALL['ddpg'] | {'reward_scale': 1e30}}))
-    assert run_fleet.main(arguments(tmp_path, processes=2, hyperparameters=settings)) == 1
+    settings.write_text(
+        yaml.safe_dump(SMALL | {'critic': SMALL['critic'] | {'learning_rate': 1e6}})
+    )
+    assert run_fleet.main(arguments(tmp_path, processes=2, config=settings)) == 1
     reasons = read_failures(tmp_path)
     assert len(reasons) == 4
     told = capsys.readouterr().err

@@ -7,7 +7,7 @@ import dataclasses
 from typing import get_type_hints
 
 import pytest
-from hexapod_agent.config import AgentConfig, CpgConfig
+from hexapod_agent.run_spec import CpgConfig, RunSpec
 from hexapod_cpg.mapping import ActionRanges
 from hexapod_cpg.oscillator import HopfConfig
 from hexapod_sim.article import section
@@ -22,7 +22,7 @@ def sections(kind: type) -> list[type]:
     return [kind, *(each for part in inner for each in sections(part))]
 
 
-@pytest.mark.parametrize('kind', sections(AgentConfig), ids=lambda kind: kind.__name__)
+@pytest.mark.parametrize('kind', sections(RunSpec), ids=lambda kind: kind.__name__)
 def test_no_field_has_a_second_default(kind) -> None:
     for field in dataclasses.fields(kind):
         assert field.default is dataclasses.MISSING, field.name
@@ -30,7 +30,7 @@ def test_no_field_has_a_second_default(kind) -> None:
 
 
 def test_all_sections_are_looked_at() -> None:
-    assert {TaskConfig, CpgConfig, HopfConfig, ActionRanges} <= set(sections(AgentConfig))
+    assert {TaskConfig, CpgConfig, HopfConfig, ActionRanges} <= set(sections(RunSpec))
 
 
 @pytest.mark.parametrize('kind', SECTIONS, ids=lambda kind: kind.__name__)
@@ -44,7 +44,7 @@ def test_values_have_the_types_that_their_fields_say(kind) -> None:
 
 
 def test_the_agent_has_what_the_packages_below_it_read() -> None:
-    config = AgentConfig.load()
+    config = RunSpec.load()
     assert config.task == TaskConfig.of_article()
     assert config.cpg.hopf == HopfConfig.of_article()
     assert config.cpg.ranges == ActionRanges.of_article()

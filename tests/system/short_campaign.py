@@ -9,9 +9,8 @@ import subprocess
 from pathlib import Path
 
 import pandas as pd
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.env import HexapodLine
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.train import train_episode
 from hexapod_agent.training import Trainer
 from hexapod_doe.bags.run_record import find_bags, read_run
@@ -81,8 +80,8 @@ class ShortCampaign:
             pd.testing.assert_frame_equal(columns, expected, check_dtype=False, check_exact=True)
 
     def _alone(self, observations: str, seed: int) -> pd.DataFrame:
-        settings = AgentConfig.load(self.config)
-        trainer = Trainer(ObservationSpec(observations), settings, seed)
+        settings = RunSpec.load(self.config)
+        trainer = Trainer(settings.observing(observations), seed)
         env = HexapodLine(observations, settings)
         summaries = [vars(train_episode(env, trainer)) for _ in range(self.episodes)]
         return pd.DataFrame(summaries).set_index('episode').drop(columns='terms')

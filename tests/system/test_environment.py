@@ -15,7 +15,7 @@ pytestmark = pytest.mark.system
 NO_FLOCK = Path(__file__).with_name('noflock.c')
 CASE = (
     'ros2 run hexapod_doe run_case --plan plan.csv --row 1 --episodes 1 --record-every 0 '
-    '--hyperparameters short.yaml'
+    '--config short.yaml'
 )
 PLAN = """\
 StdOrder,RunOrder,case,replicate,seed,run_id,observations,A,B

@@ -6,8 +6,7 @@
 from __future__ import annotations
 
 import pytest
-from hexapod_agent.config import AgentConfig
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
 from hexapod_doe.analysis.follow import read_track, responses
 from hexapod_doe.bags.run_record import read_run
@@ -21,8 +20,8 @@ LAUNCH = 'ros2 launch hexapod_bringup follow.launch.xml'
 @pytest.fixture
 def ready(shell):
     """Write an untrained checkpoint, and a line that jumps after one second and after two."""
-    config = AgentConfig.from_mapping({'actor': {'hidden': [8, 8]}}, 'test')
-    trainer = Trainer(ObservationSpec('C'), config, 3)
+    config = RunSpec.from_mapping({'actor': {'hidden': [8, 8]}}, 'test')
+    trainer = Trainer(config.observing('C'), 3)
     checkpoint.save(shell.directory / 'agent.pt', trainer, to_resume=False)
     (shell.directory / 'jumps.yaml').write_text(
         'task: {time_limit_steps: 100, line_jump: 0.3, line_period: 1.0, start_offset: 0.0}\n'

@@ -9,8 +9,7 @@ import re
 import signal
 
 import pytest
-from hexapod_agent.config import AgentConfig
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
 
 from hexapod_agent import checkpoint
@@ -21,7 +20,7 @@ SMALL = {'actor': {'hidden': [16, 12]}, 'critic': {'hidden': [16, 12]}}
 
 @pytest.fixture
 def agent(shell) -> str:
-    trainer = Trainer(ObservationSpec('CE'), AgentConfig.from_mapping(SMALL, 'small'), 5)
+    trainer = Trainer(RunSpec.from_mapping(SMALL, 'small').observing('CE'), 5)
     checkpoint.save(shell.directory / 'agent.pt', trainer, to_resume=False)
     return 'agent.pt'
 

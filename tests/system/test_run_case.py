@@ -22,7 +22,7 @@ MANAGER = (
 )
 CASE = (
     'ros2 run hexapod_doe run_case --plan plan.csv --row {row} --out jobs --episodes {episodes} '
-    '--record-every {every} --hyperparameters short.yaml'
+    '--record-every {every} --config short.yaml'
 )
 PLAN = """\
 StdOrder,RunOrder,case,replicate,seed,run_id,observations,A,B

@@ -9,9 +9,9 @@ from hexapod_cpg.mapping import ACTION_SIZE, command_from_action
 from hexapod_cpg.oscillator import start_state
 from hexapod_sim.task import LineTask, Outcome
 
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.env import Observation, read_observation
 from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.run_spec import RunSpec
 
 
 class Robots:
@@ -21,7 +21,7 @@ class Robots:
         actions: What each robot is told next (places, 30); zeros where nobody is.
     """
 
-    def __init__(self, config: AgentConfig, places: int) -> None:
+    def __init__(self, config: RunSpec, places: int) -> None:
         self._config = config.cpg
         # A model of its own for each: advancing switches the model's sensors off and on.
         self._tasks = [LineTask(config.task) for _ in range(places)]

@@ -15,11 +15,11 @@ import torch
 from hexapod_cpg.mapping import ACTION_SIZE
 from numpy.typing import NDArray
 
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.ddpg import Ddpg, UpdateStatistics
 from hexapod_agent.fleet.crew import Crew, Job
 from hexapod_agent.fleet.seat import Seat
 from hexapod_agent.replay import Batch
+from hexapod_agent.run_spec import RunSpec
 
 
 class StackedLearners:
@@ -34,15 +34,16 @@ class StackedLearners:
     """
 
     def __init__(
-        self, config: AgentConfig, observation_size: int, places: int, crew: Crew, device: str
+        self, config: RunSpec, observation_size: int, places: int, crew: Crew, device: str
     ) -> None:
-        ddpg, wide = config.ddpg, torch.float32
+        learner, wide = config.learner, torch.float32
+        ddpg = learner.ddpg
         self.beat, self._updates = ddpg.update_every, ddpg.group_size
         narrow = torch.bfloat16 if config.training.precision == 'bfloat16' else None
         self._crew = crew
         self._device = torch.device(device)
         self._stack = Ddpg(
-            observation_size, ACTION_SIZE, config.actor, config.critic, ddpg.batch_size,
+            observation_size, ACTION_SIZE, learner.actor, learner.critic, ddpg.batch_size,
             ddpg.target_smoothing, None, places, wide, narrow, self._device,
         )  # fmt: skip
         pinned = self._device.type != 'cpu'

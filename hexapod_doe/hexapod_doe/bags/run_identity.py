@@ -17,14 +17,19 @@ from types import MappingProxyType
 from typing import Any
 
 import yaml
-from hexapod_agent.config import AgentConfig, ConfigError
+from hexapod_agent.run_spec import ConfigError, RunSpec
 
-CONFIG = 'config'
+CONFIG = 'config'  # where a bag's specification stood before it had the sensors in it
+SPEC = 'spec'
 EPISODES = 'episodes'
 _MAKING = ('machine', 'processor', 'device', 'git_commit')
 _VERSION = 'version.'
-_WITHOUT_EFFECT = ('config.training.episodes', 'config.training.checkpoint_every')
-"""The length is compared as such, and a run gives the same wherever its checkpoints are taken."""
+_COMPARED_APART = (
+    'config.observations.',
+    'config.training.episodes',
+    'config.training.checkpoint_every',
+)
+"""Sensors and length are compared as such; a run gives the same wherever its checkpoints are."""
 _NAMED_KEYS, _NAMED_RUNS = 3, 8
 """How many of them a message names."""
 
@@ -42,7 +47,8 @@ def run_identity(metadata: Mapping[str, str]) -> dict[str, str]:
 def settings(metadata: Mapping[str, str]) -> dict[str, str]:
     """Return what all runs of an experiment share: length, and each value of their config."""
     found = {EPISODES: metadata[EPISODES]} if EPISODES in metadata else {}
-    return found | dict(_flat_config(metadata[CONFIG])) if CONFIG in metadata else found
+    text = metadata.get(SPEC, metadata.get(CONFIG))
+    return found if text is None else found | dict(_flat_spec(text))
 
 
 def making(metadata: Mapping[str, str]) -> dict[str, str]:
@@ -107,21 +113,22 @@ def _stated(key: str, found: Mapping[str, str]) -> bool:
 
 
 @lru_cache(maxsize=256)
-def _flat_config(text: str) -> Mapping[str, str]:
-    """Return each value of a configuration by its dotted key, filled up from article.yaml.
+def _flat_spec(text: str) -> Mapping[str, str]:
+    """Return each value of a specification by its dotted key, filled up from article.yaml.
 
     An older version's lacks keys that this one has; one that this version cannot read is taken
     as it stands.
     """
     try:
         values: Any = yaml.safe_load(text) or {}
-        values = AgentConfig.from_mapping(values, 'bag').to_mapping()
+        values = RunSpec.from_mapping(values, 'bag').to_mapping()
     except yaml.YAMLError:
         values = text
     except ConfigError:
         pass
-    flat = dict(_flattened(values, CONFIG))
-    return MappingProxyType({k: v for k, v in flat.items() if k not in _WITHOUT_EFFECT})
+    return MappingProxyType(
+        {k: v for k, v in _flattened(values, CONFIG) if not k.startswith(_COMPARED_APART)}
+    )
 
 
 def _flattened(values: Any, key: str) -> list[tuple[str, str]]:

@@ -11,8 +11,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import yaml
-from hexapod_agent.config import AgentConfig
+from hexapod_agent.run_spec import RunSpec
 
 from hexapod_doe.bags.bag_state import sound_metadata
 from hexapod_doe.bags.run_identity import differences, run_identity, settings
@@ -114,17 +113,16 @@ class RunSettings:
         """Return what the bag of each run will say of them, see `bags.run_identity.settings`.
 
         Raises:
-            hexapod_agent.config.ConfigError: the file cannot be used.
+            hexapod_agent.run_spec.ConfigError: the file cannot be used.
         """
         if self.config and not Path(self.config).exists():  # the workers have it
             return settings({'episodes': str(self.episodes)})
-        return shared_settings(AgentConfig.load(self.config or None), self.episodes)
+        return shared_settings(RunSpec.load(self.config or None), self.episodes)
 
 
-def shared_settings(config: AgentConfig, episodes: int) -> dict[str, str]:
+def shared_settings(config: RunSpec, episodes: int) -> dict[str, str]:
     """Return what the bag of each run will say of its length and configuration."""
-    text = yaml.safe_dump(config.to_mapping(), sort_keys=False)
-    return settings({'episodes': str(episodes), 'config': text})
+    return settings({'episodes': str(episodes), 'spec': config.to_text()})
 
 
 @dataclass

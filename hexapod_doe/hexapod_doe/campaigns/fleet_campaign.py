@@ -10,7 +10,7 @@ from datetime import datetime
 from types import TracebackType
 from typing import Self
 
-from hexapod_agent.config import AgentConfig
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.summary import EpisodeSummary
 
 from hexapod_doe.campaigns.campaign import Campaign, Row
@@ -30,7 +30,7 @@ class FleetCampaign:
     def __init__(
         self,
         campaign: Campaign,
-        config: AgentConfig,
+        config: RunSpec,
         episodes: int,
         device: str,
         began: datetime,

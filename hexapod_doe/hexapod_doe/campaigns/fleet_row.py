@@ -8,12 +8,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Protocol
 
-import yaml
 from hexapod_agent.checkpoint import CheckpointError
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.event_log import EventLog
-from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.provenance import provenance
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.summary import EpisodeSummary
 from hexapod_agent.training import Trainer
 from hexapod_sim.robot import CONTROL_PERIOD_NS
@@ -57,7 +55,7 @@ class FleetRow:
     """
 
     def __init__(
-        self, row: Row, config: AgentConfig, episodes: int, device: str, watch: Watch
+        self, row: Row, config: RunSpec, episodes: int, device: str, watch: Watch
     ) -> None:
         """Begin the row, or go on where an earlier process left it.
 
@@ -66,6 +64,7 @@ class FleetRow:
         """
         self.row, self.episodes, self._watch = row, episodes, watch
         set_aside(row.bag)
+        config = config.observing(row.observations)
         self.trainer, cut = self._begin(config)
         done = self.trainer.episode
         metadata = _metadata(row, config, episodes, device)
@@ -79,11 +78,11 @@ class FleetRow:
             self._last_ns = carry_over(self._recording, cut, done, _RESULTS.name)
         self._events = EventLog(Path(f'{row.bag}.tensorboard'), done)
 
-    def _begin(self, config: AgentConfig) -> tuple[Trainer, Path | None]:
+    def _begin(self, config: RunSpec) -> tuple[Trainer, Path | None]:
         """Return the row's trainer and, where it goes on, the bag with the episodes it has had."""
-        row, spec = self.row, ObservationSpec(self.row.observations)
+        row = self.row
         try:
-            trainer = run_checkpoint.resumed(row.bag, spec, config, row.seed, self.episodes)
+            trainer = run_checkpoint.resumed(row.bag, config, row.seed, self.episodes)
         except CheckpointError as error:
             self._watch.log(f'run {row.run_id} begins anew: {error}')
             trainer = None
@@ -95,7 +94,7 @@ class FleetRow:
                 f'run {row.run_id} begins anew: no recording holds the {trainer.episode} episodes '
                 'before its checkpoint'
             )
-        return Trainer(spec, config, row.seed), None
+        return Trainer(config, row.seed), None
 
     @property
     def saves_next(self) -> bool:
@@ -144,16 +143,16 @@ class FleetRow:
         self._watch.end(self.row, error)
 
 
-def _metadata(row: Row, config: AgentConfig, episodes: int, device: str) -> dict[str, str]:
+def _metadata(row: Row, config: RunSpec, episodes: int, device: str) -> dict[str, str]:
     """Return what the bag says of the run: as the graph's does, but that no topic was needed."""
     return {
         **row.metadata,
-        'observations': row.observations,
+        'observations': config.letters,
         'seed': str(row.seed),
         'mode': 'train',
         'episodes': str(episodes),
         'window': str(config.training.window),
-        'config': yaml.safe_dump(config.to_mapping(), sort_keys=False),
+        'spec': config.to_text(),
         'subscriptions': '',
         'device': device,
         **provenance(),

@@ -9,7 +9,7 @@ import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
-from hexapod_agent.config import AgentConfig
+from hexapod_agent.run_spec import RunSpec
 
 from hexapod_doe.bags.run_identity import differences
 from hexapod_doe.campaigns.campaign import PLAN_FILE, shared_settings
@@ -101,7 +101,7 @@ def _config(folder: Path, begun: Sequence[Run]) -> str:
         return _quoted(folder / CONFIG_FILE)
     if not begun:
         return ''
-    expected = shared_settings(AgentConfig.load(), begun[0].planned)
+    expected = shared_settings(RunSpec.load(), begun[0].planned)
     return 'FILE' if differences(begun[0].settings, expected) else ''
 
 

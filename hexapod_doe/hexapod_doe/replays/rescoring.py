@@ -15,7 +15,7 @@ from itertools import pairwise
 from typing import Any
 
 import yaml
-from hexapod_agent.config import AgentConfig
+from hexapod_agent.run_spec import RunSpec
 from hexapod_sim.simulation import roll_pitch_yaw
 from hexapod_sim.sums import ordered_sum
 from hexapod_sim.task import DIVERGED, Outcome, TaskConfig, diverged, judge, line_at
@@ -75,7 +75,7 @@ class Rescored:
         return self.outcomes[-1].cause if self.outcomes else ''
 
 
-def recorded_config(bag: BagFile) -> AgentConfig:
+def recorded_config(bag: BagFile) -> RunSpec:
     """Return a configuration with the task that a run was made with, if the bag tells.
 
     The rest is article.yaml's: an old bag's learner may know keys that this version does not.
@@ -83,8 +83,9 @@ def recorded_config(bag: BagFile) -> AgentConfig:
     Raises:
         ConfigError: the task in the bag has an unknown key or value.
     """
-    config = yaml.safe_load(bag.metadata().get('config', '')) or {}
-    return AgentConfig.from_mapping({'task': config.get('task', {})}, f'bag {bag.path}')
+    metadata = bag.metadata()
+    config = yaml.safe_load(metadata.get('spec', metadata.get('config', ''))) or {}
+    return RunSpec.from_mapping({'task': config.get('task', {})}, f'bag {bag.path}')
 
 
 def rescore(bag: BagFile, task: TaskConfig) -> Iterator[Rescored]:

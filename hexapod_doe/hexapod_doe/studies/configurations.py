@@ -28,12 +28,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import yaml
-from hexapod_agent.config import AgentConfig, ConfigError
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.evaluation import Evaluation, run_episode, summarize
-from hexapod_agent.observation import ObservationSpec, parse_observations
+from hexapod_agent.observation import parse_observations
 from hexapod_agent.policies import Policy, constant_policy, trained_policy
 from hexapod_agent.provenance import provenance
+from hexapod_agent.run_spec import ConfigError, RunSpec
 from hexapod_agent.train import train_episode
 from hexapod_agent.training import Trainer
 from hexapod_cpg.mapping import ACTION_SIZE
@@ -67,7 +67,7 @@ class Study:
         judged_after: Episodes after which the agent is evaluated; the last one always is.
         starts: Of an evaluation.
         config: File of changes to article.yaml that all rows have, beside the study's file.
-        base: Values by 'section.key' that all rows have.
+        base: Values by dotted key that all rows have.
         factors: By name.
         rows: A sign per factor; one row without factors is the base itself.
     """
@@ -118,21 +118,19 @@ class Study:
             parse_observations(_letters(sensors))
 
     def values(self, row: str) -> dict[str, Any]:
-        """Values by 'section.key' that make a row."""
+        """Values by dotted key that make a row."""
         levels = [
             factor.high if sign == '+' else factor.low
             for factor, sign in zip(self.factors.values(), row, strict=True)
         ]
         return {key: value for level in (self.base, *levels) for key, value in level.items()}
 
-    def configuration(self, row: str) -> AgentConfig:
+    def configuration(self, row: str) -> RunSpec:
         """Build what a row trains with; its length is that of the trainings."""
-        changes: dict[str, Any] = {}
+        config = RunSpec.load(self.config)
         for key, value in self.values(row).items():
-            section, _, name = key.partition('.')
-            changes.setdefault(section, {})[name] = value
-        config = AgentConfig.load(self.config).changed(changes, f'row {row!r}')
-        return config.changed({'training': {'episodes': self.episodes}}, 'episodes')
+            config = config.with_value(key, value, f'row {row!r}')
+        return config.with_value('training.episodes', self.episodes, 'episodes')
 
     def runs(self) -> list['Run']:
         """Every training, those of a seed together."""
@@ -154,7 +152,7 @@ class Training:
 
     def __init__(self, study: Study, run: Run, out: Path) -> None:
         self._study, self._run, self._out = study, run, out
-        config = study.configuration(run.row)
+        config = study.configuration(run.row).observing(_letters(run.sensors))
         signs = run.row.replace('+', 'p').replace('-', 'm')
         self._path = out / f'{signs}_{run.sensors}_{run.seed}.pt'
         self._notes = self._path.with_suffix('.json')
@@ -165,8 +163,8 @@ class Training:
             notes = json.loads(self._notes.read_text())[str(self._trainer.episode)]
             self._lines, self._seconds = notes
         else:
-            self._trainer = Trainer(ObservationSpec(_letters(run.sensors)), config, run.seed)
-        self._env = HexapodLine(self._trainer.spec.letters, config)
+            self._trainer = Trainer(config, run.seed)
+        self._env = HexapodLine(config=config)
 
     def train(self) -> None:
         """Train to the end, and write the lines of the table and the agent."""
@@ -191,13 +189,13 @@ class Training:
         checkpoint.save(self._path, self._trainer, to_resume=True)
 
     def _judge(self) -> Evaluation:
-        env = HexapodLine(self._trainer.spec.letters, self._trainer.config)
+        env = HexapodLine(config=self._trainer.config)
         return _evaluation(env, trained_policy(self._trainer.agent), self._study.starts)
 
     def _line(self, found: Evaluation) -> dict[str, Any]:
-        run, config = self._run, self._trainer.config.to_mapping()
+        run, config = self._run, self._trainer.config
         keys = {key for row in self._study.rows for key in self._study.values(row)}
-        values = {key: config[key.split('.')[0]][key.split('.')[1]] for key in sorted(keys)}
+        values = {key: config.value(key) for key in sorted(keys)}
         return {'row': run.row, **values, 'sensors': run.sensors, 'seed': run.seed} | {
             'episode': self._trainer.episode,
             'starts': found.starts,

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from functools import partial
 
 import pytest
-from hexapod_agent.config import AgentConfig
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.fleet.crew import Crew
 from hexapod_agent.fleet.fleet import Fleet
@@ -16,6 +15,7 @@ from hexapod_agent.fleet.robots import Robots
 from hexapod_agent.fleet.seat import Run
 from hexapod_agent.fleet.stacked import StackedLearners
 from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.summary import EpisodeSummary
 from hexapod_agent.train import train_episode
 from hexapod_agent.training import Trainer
@@ -43,16 +43,16 @@ class NotedRun(Run):
 
 
 @pytest.fixture(scope='session')
-def full_config() -> AgentConfig:
+def full_config() -> RunSpec:
     """Networks and batches of the real size, and its arithmetic; episodes of 80 steps."""
     changes = {'task': {'time_limit_steps': 80}, 'ddpg': {'buffer_size': 5000}}
-    return AgentConfig.from_mapping(changes, 'full_config')
+    return RunSpec.from_mapping(changes, 'full_config')
 
 
 @pytest.fixture
 def new_run() -> Callable[..., NotedRun]:
-    def make(config: AgentConfig, observations: str, seed: int, episodes: int = 2) -> NotedRun:
-        return NotedRun(Trainer(ObservationSpec(observations), config, seed), episodes)
+    def make(config: RunSpec, observations: str, seed: int, episodes: int = 2) -> NotedRun:
+        return NotedRun(Trainer(config.observing(observations), seed), episodes)
 
     return make
 

@@ -14,6 +14,7 @@ from hexapod_doe.bags.bag_state import find_bags
 from hexapod_doe.bags.run_record import read_run, read_topic
 from hexapod_doe.errors import BagError
 from hexapod_doe.replays.rescoring import rescore
+from hexapod_sim.article import section
 from hexapod_sim.task import TaskConfig
 from mcap.writer import CompressionType, Writer
 
@@ -184,4 +185,4 @@ def test_a_topic_of_another_type_is_not_read_for_the_one_that_is_meant(foreign) 
     with pytest.raises(BagError, match='/robot/odom is of type std_msgs/msg/String'):
         next(read_topic(bag, 'odom', 'nav_msgs/msg/Odometry'))
     with pytest.raises(BagError, match='is of type std_msgs/msg/String, expected nav_msgs'):
-        next(rescore(BagFile(bag), TaskConfig()))
+        next(rescore(BagFile(bag), TaskConfig(**section('task'))))

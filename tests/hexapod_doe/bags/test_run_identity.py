@@ -5,13 +5,13 @@
 
 import pytest
 import yaml
-from hexapod_agent.config import AgentConfig
+from hexapod_agent.run_spec import RunSpec
 from hexapod_doe.bags.run_identity import differences, making, odd_runs, run_identity, settings
 
 
 def text(**changes: object) -> str:
     """Return the configuration of a run as its bag holds it."""
-    config = AgentConfig.from_mapping(changes, 'test')
+    config = RunSpec.from_mapping(changes, 'test')
     return yaml.safe_dump(config.to_mapping(), sort_keys=False)
 
 
@@ -38,7 +38,7 @@ def test_every_value_of_the_configuration_counts():
     found = differences(
         run(config=text(actor={'hidden': [8, 8]})), run(config=text(actor={'hidden': [16, 8]}))
     )
-    assert found == 'config.actor.hidden [8, 8], expected [16, 8]'
+    assert found == 'config.learner.actor.hidden [8, 8], expected [16, 8]'
 
 
 @pytest.mark.parametrize('key', ['episodes', 'checkpoint_every'])
@@ -48,7 +48,7 @@ def test_what_changes_no_result_does_not(key):
 
 def test_an_older_configuration_is_filled_up_and_a_strange_one_is_another():
     older = yaml.safe_load(text())
-    del older['noise']
+    del older['learner']['noise']
     assert settings({'config': yaml.safe_dump(older)}) == settings({'config': text()})
     for strange in ('x', 'sails: 3', '{'):
         assert differences(run(config=strange), run(config=text()))
@@ -69,7 +69,7 @@ def test_blocks_by_configuration_cover_all_of_it():
         'a': settings({'config': text(actor={'hidden': [8]})}),
         'b': settings({'config': text()}),
     }
-    assert list(odd_runs(runs)) == ['config.actor.hidden']
+    assert list(odd_runs(runs)) == ['config.learner.actor.hidden']
     assert odd_runs(runs, without=['config']) == {}
 
 

@@ -101,7 +101,7 @@ def test_runs_of_another_configuration_are_not_passed_over(make, bag, tmp_path, 
     bag(config='actor: {hidden: [8, 8]}')
     options = ['--plan', str(tmp_path / 'plan.csv'), '--episodes', '3']
     assert run_fleet.main(options) == 2
-    assert 'config.actor.hidden [8, 8], expected' in capsys.readouterr().err
+    assert 'config.learner.actor.hidden [8, 8], expected' in capsys.readouterr().err
     assert campaign_status([str(tmp_path)]) == 1  # it does not know the configuration
     assert '1 done' in capsys.readouterr().out
 
@@ -111,4 +111,4 @@ def test_runs_that_are_not_alike_are_told_by_the_status(make, bag, tmp_path, cap
     bag(0, config='actor: {hidden: [8, 8]}')
     bag(1, config='actor: {hidden: [9, 9]}')
     campaign_status([str(tmp_path)])
-    assert 'not alike: config.actor.hidden' in capsys.readouterr().out
+    assert 'not alike: config.learner.actor.hidden' in capsys.readouterr().out

@@ -51,8 +51,8 @@ def write(tmp_path):
 
 def test_a_row_is_the_levels_of_its_factors(write):
     config = Study.load(write()).configuration('-+')
-    assert (config.ddpg.n_step, config.ddpg.update_ratio) == (3, 0.25)
-    assert (config.actor.layer_norm, config.critic.layer_norm) == (True, True)
+    assert (config.learner.ddpg.n_step, config.learner.ddpg.update_ratio) == (3, 0.25)
+    assert (config.learner.actor.layer_norm, config.learner.critic.layer_norm) == (True, True)
     assert (config.task.time_limit_steps, config.training.episodes) == (8, 3)
 
 
@@ -104,7 +104,7 @@ def test_a_training_that_was_cut_gives_the_same_line(write, tmp_path, monkeypatc
         ({'rows': ['+0']}, "row '[+]0', expected 2 signs"),
         ({'seeds': [1]}, 'seed 1 is that of the starts'),
         ({'sets': ['X']}, "unknown letter 'X'"),
-        ({'base': {'ddpg.gamma': 1}}, "unknown key 'ddpg.gamma'"),
+        ({'base': {'ddpg.gamma': 1}}, "unknown key 'learner.ddpg.gamma'"),
         ({'base': {'ddpg.update_every': 3}}, 'update_ratio is 0.5, expected a multiple of 1/3'),
         ({'episodes': 0}, 'episodes'),
         ({'config': 'no.yaml'}, 'no.yaml.* not found'),

@@ -123,7 +123,7 @@ def test_linked_runs_are_read_with_their_plan(base, tmp_path):
     ('changes', 'told'),
     [
         ({'episodes': 5}, 'episodes 5 in odd_rep01; 3 in the other 8'),
-        ({'config': 'actor: {hidden: [8]}'}, r'config.actor.hidden \[8\] in odd_rep01'),
+        ({'config': 'actor: {hidden: [8]}'}, r'config.learner.actor.hidden \[8\] in odd_rep01'),
     ],
 )
 def test_runs_that_are_not_alike_are_named_and_refused(base, fill, write_bag, changes, told):

@@ -16,9 +16,8 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from hexapod_agent.agent_node import AgentNode
-from hexapod_agent.config import AgentConfig
-from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.play_node import PlayNode
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_doe.bags.bag_file import BagFile
@@ -106,7 +105,7 @@ def node_tables(bag: Path) -> str:
         write_plan(make_plan(fraction('eighth')), plan)
         # In real time the node `play` subscribes by itself: here to all that it ever does.
         agent = Path(directory) / 'agent.pt'
-        trainer = Trainer(ObservationSpec(LETTERS), AgentConfig.load(), 0)
+        trainer = Trainer(RunSpec.load().observing(LETTERS), 0)
         checkpoint.save(agent, trainer, to_resume=False)
         given = [f'plan:={plan}', 'local_workers:=0', f'bag:={bag}']
         given += [f'checkpoint:={agent}', f'play:sync:={REALTIME}']

@@ -20,8 +20,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from diagnostic_msgs.msg import DiagnosticArray
-from hexapod_agent.config import AgentConfig
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
 from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.session import begin
@@ -173,7 +172,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         agent = options.checkpoint or directory / 'agent.pt'
         try:
             if options.checkpoint is None:
-                trainer = Trainer(ObservationSpec(options.observations), AgentConfig.load(), 1)
+                trainer = Trainer(RunSpec.load().observing(options.observations), 1)
                 checkpoint.save(agent, trainer, to_resume=False)
             checkpoint.load(agent)  # what is wrong with it is better said before anything starts
             heard = measure(options.seconds, agent.resolve(), directory)
