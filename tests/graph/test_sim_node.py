@@ -15,6 +15,7 @@ from hexapod_interfaces.msg import FootContacts, LineOffset, StepOutcome
 from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.stamps import time_message, to_nanoseconds
 from hexapod_sim.sim_node import SimNode
+from hexapod_sim.sums import ordered_sum
 from hexapod_sim.task import LineTask, TaskConfig, episode_seed
 from nav_msgs.msg import Odometry
 from rcl_interfaces.srv import SetParametersAtomically
@@ -126,7 +127,7 @@ def test_time_goes_on_over_resets_and_the_state_starts_afresh(rig: Rig) -> None:
     assert joints[0].position == joints[2].position
     assert joints[0].position != joints[1].position
     assert [message.step for message in outcome] == [0, 1, 0]
-    assert outcome[1].reward == sum(outcome[1].term_values)
+    assert outcome[1].reward == ordered_sum(outcome[1].term_values)
 
 
 def test_nothing_is_read_for_topics_that_nobody_hears(rig: Rig, monkeypatch) -> None:

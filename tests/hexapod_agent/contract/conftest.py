@@ -16,6 +16,7 @@ from hexapod_agent.contract.finding import Finding
 from hexapod_agent.contract.limits import Limits
 from hexapod_agent.contract.report import SensorReport
 from hexapod_agent.observation import ObservationSpec
+from hexapod_sim.channel import Channel
 from hexapod_sim.robot import CONTROL_PERIOD_NS, GRAVITY, JOINTS, NEUTRAL_POSE, TOTAL_MASS
 from hexapod_sim.sensor_table import CHANNELS, LETTERS
 
@@ -25,11 +26,15 @@ SWING_RAD = 0.3
 SWING_RAD_PER_S = 6.0  # angular frequency of a tripod gait of about 1 Hz
 
 
-def healthy_values(topic: str, seconds: float) -> dict[str, np.ndarray]:
-    """Return a message's numbers while every joint swings about the standing pose."""
+def healthy_values(channel: Channel, topic: str, seconds: float) -> dict[str, np.ndarray]:
+    """Return a message's numbers while every joint swings about the standing pose.
+
+    What is not told here, as of a sensor that was added, is observed as 0.
+    """
     phase = SWING_RAD_PER_S * seconds
     leg = topic.removeprefix('foot_force/')
-    values = {
+    values = {field.path: np.full(field.size, field.center) for field in channel.fields}
+    values |= {
         'joint_states': {
             'position': NEUTRAL_POSE + SWING_RAD * np.sin(phase),
             'velocity': np.full(18, SWING_RAD * SWING_RAD_PER_S * np.cos(phase)),
@@ -47,7 +52,7 @@ def healthy_values(topic: str, seconds: float) -> dict[str, np.ndarray]:
         },
         f'foot_force/{leg}': {'wrench.force': np.array([0.5, 0.0, TOTAL_MASS * GRAVITY / 6])},
         'foot_contacts': {'contact': np.array([1.0, 0.0, 1.0, 0.0, 1.0, 0.0])},
-    }[topic]
+    }.get(topic, {})
     if topic.startswith('imu'):
         values |= {
             'linear_acceleration': np.array([0.2, -0.1, GRAVITY]),
@@ -71,7 +76,7 @@ def healthy() -> Evidence:
                     stamp_ns=START_NS + step * CONTROL_PERIOD_NS,
                     frame=frame,
                     names=JOINTS if joints else (),
-                    values=healthy_values(topic, step * CONTROL_PERIOD_NS * 1e-9),
+                    values=healthy_values(channel, topic, step * CONTROL_PERIOD_NS * 1e-9),
                 )
                 for step in range(SAMPLES)
             )

@@ -13,14 +13,16 @@ import pytest
 from hexapod_agent.contract.evidence import Offer, Sample
 from hexapod_agent.contract.limits import Limits
 from hexapod_sim.robot import JOINTS
-from hexapod_sim.sensor_table import LETTERS
+from hexapod_sim.sensor_table import CHANNELS, LETTERS
 
 
 def test_a_healthy_robot_passes_without_a_word(robot) -> None:
     report = robot.report()
     assert report.findings == ()
     assert report.passed
-    assert [row.letter for row in report.rows] == [*['', '', ''], *'ABCDE', *'FFFFFF', 'G']
+    expected = [channel.letter for channel in CHANNELS for _ in channel.topics]
+    assert expected[:15] == [*['', '', ''], *'ABCDE', *'FFFFFF', 'G']
+    assert [row.letter for row in report.rows] == expected
     for row in report.rows:
         assert row.rate == pytest.approx(40.0)
         assert row.lag == pytest.approx(0.0)

@@ -17,7 +17,8 @@ from hexapod_doe.reporting.report import write_report
 from hexapod_doe.tables.table import RunTable, build_rows
 from hexapod_sim.sensor_table import CHANNELS
 
-NAMES = {channel.letter: channel.name for channel in CHANNELS if channel.letter}
+LETTERS = 'ABCDEFG'  # of the design, however many sensors the table has
+NAMES = {channel.letter: channel.name for channel in CHANNELS if channel.letter in tuple(LETTERS)}
 EFFECTS = np.array([10, 25, 60, 20, 30, -8, -12])
 """Half the effect of each sensor on the reward after a long training; C matters most."""
 
