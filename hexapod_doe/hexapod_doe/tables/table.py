@@ -208,10 +208,10 @@ def _without_repeats(
         if not set(key) <= set(raw.columns):
             continue
         same_run = raw.duplicated([*key, *factors])
-        if same_run.any():
+        if (raw.duplicated(key) & ~same_run).any():
+            again.append(' and '.join(key))  # so that it names no run, of the same levels either
+        elif same_run.any():
             return _dropped(raw, key, same_run)
-        if raw.duplicated(key).any():
-            again.append(' and '.join(key))
     if again:
         text = (
             f'Numbers of {"; ".join(again)} come again with other levels: the rows are taken as '

@@ -265,3 +265,15 @@ def test_a_centre_point_is_none_of_the_sets() -> None:
     labels = one('80_center_partial.csv').rows['label']
     assert labels.tolist().count('(none)') == 2
     assert labels.iloc[-1] == 'centre CD'
+
+
+def test_two_plans_of_one_design_in_a_table_are_replicates(tmp_path: Path) -> None:
+    # Each plan counts its runs from 1, in an order of its own: run 1 is the same case in both.
+    heading, *cases = small_rows()
+    rows = [[*heading, 'RunOrder'], *([*row, str(i + 1)] for i, row in enumerate(cases[::3]))]
+    second = [[*row[:3], f'{float(row[3]) + 1}', row[4]] for row in rows[1:]]
+    second[3][4], second[4][4] = second[4][4], second[3][4]
+    (table,) = read_csv(write(tmp_path, [*rows, *second]), 'y')
+    assert len(table.rows) == 16
+    assert table.rows['run_order'].tolist() == [*range(1, 9), 9, 10, 11, 13, 12, 14, 15, 16]
+    assert any('RunOrder come again with other levels' in text for text in table.caveats)
