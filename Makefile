@@ -40,11 +40,14 @@ ros_ws/install/.ready: $(VENV)/.ready $(INTERFACES) $(INSTALLED) | other-ros
 	@touch $@
 
 demo: setup  ## run a small real campaign through the graph, to a report
-	@$(ENTER); if python -m hexapod_doe.campaign_status --quiet $(DEMO); then rm -rf $(DEMO); fi
+	@$(ENTER); if python -m hexapod_doe.campaign_status --quiet $(DEMO); then \
+		echo '$(DEMO) holds a finished demo, which is analysed again; `make clean-demo` forgets it'; fi
 	@$(ENTER); [ -f $(DEMO)/plan.csv ] || ros2 run hexapod_doe plan --design eighth --replicates 1 --seed 1 \
 		--out $(DEMO)/plan.csv
 	@$(ENTER); ros2 launch hexapod_bringup campaign.launch.xml plan:=$(DEMO)/plan.csv \
 		episodes:=$(DEMO_EPISODES) record_every:=$(DEMO_EPISODES) local_workers:=2
+	@$(ENTER); python -m hexapod_doe.campaign_status --quiet $(DEMO) || { \
+		echo '$(DEMO) is not finished; `make demo` goes on, `campaign_status $(DEMO)` tells how far it is'; exit 1; }
 	@$(ENTER); ros2 run hexapod_doe analyze $(DEMO) --out $(DEMO)/report
 
 test: setup  ## run the tests, without the proofs that take minutes each
@@ -69,8 +72,10 @@ film: setup  ## film the robot on its way, without a display
 	@$(ENTER); ros2 run hexapod_agent film ros_ws/src/hexapod_bringup/agents/ABCDE.pt --out walk.gif --strip docs/images/walk.png \
 		--width 330 --height 250 --zoom 1.7 --seconds 1.5 --seed 3
 
-clean-demo:  ## forget the demo campaign
-	rm -rf $(DEMO)
+clean-demo:  ## forget the demo campaign, and leave what else lies in its folder
+	rm -rf $(addprefix $(DEMO)/,runs logs report confirm plan.csv plan.json config.yaml progress.html failures.csv \
+		campaign.lock)
+	[ ! -d $(DEMO) ] || rmdir --ignore-fail-on-non-empty $(DEMO)
 
 clean:  ## remove the virtual environment and everything built
 	rm -rf $(VENV) ros_ws/build ros_ws/install ros_ws/log .mypy_cache .pytest_cache .ruff_cache

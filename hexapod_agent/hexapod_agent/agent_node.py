@@ -22,6 +22,7 @@ from rclpy.action.server import ServerGoalHandle
 from rclpy.node import Node
 
 from hexapod_agent import checkpoint, run_checkpoint
+from hexapod_agent.action_names import PLAY_RUN, TRAIN_RUN
 from hexapod_agent.checkpoint import CheckpointError
 from hexapod_agent.graph_run import GraphRun
 from hexapod_agent.observation import parse_observations
@@ -40,6 +41,9 @@ PARAMETERS = (
         unit='s',
         range=(0.1, 3600.0),
     ),
+    Parameter(
+        'for_hire', True, f'whether campaigns may give it runs; if not, its action is {PLAY_RUN}'
+    ),
 )
 
 MakeTrainer = Callable[[RunSpec, int], Trainer]
@@ -48,7 +52,13 @@ MakeTrainer = Callable[[RunSpec, int], Trainer]
 class AgentNode(Node):
     """Observes the topics of a run's set, acts through `cpg/command` and learns meanwhile."""
 
-    def __init__(self, make_trainer: MakeTrainer = Trainer) -> None:
+    def __init__(self, make_trainer: MakeTrainer = Trainer, action: str = '') -> None:
+        """Offer the action.
+
+        Args:
+            make_trainer: what learns.
+            action: name of the action; empty for what the parameter `for_hire` says.
+        """
         super().__init__('agent')
         declare(self, PARAMETERS)
         self.timeout_s = float(self.get_parameter('timeout').value)
@@ -62,7 +72,7 @@ class AgentNode(Node):
         self._server = CoroutineActionServer(
             self,
             TrainRun,
-            'train_run',
+            action or (TRAIN_RUN if self.get_parameter('for_hire').value else PLAY_RUN),
             self._train,
             goal_callback=self._on_goal,
             cancel_callback=lambda _: CancelResponse.ACCEPT,

@@ -31,6 +31,7 @@ from rclpy.executors import Executor
 from rclpy.node import Node
 from rclpy.task import Future
 
+from hexapod_agent.action_names import PLAY_RUN
 from hexapod_agent.agent_node import AgentNode
 from hexapod_agent.evaluation import Episode, EpisodeMeter, GraphError
 from hexapod_agent.messages import decode, outcome_from_message
@@ -60,7 +61,7 @@ class EvaluationNode(Node):
         self._meter = EpisodeMeter(0.0)
         for topic, kind in _TOPICS.items():
             self.create_subscription(kind, topic, partial(self._on_sample, topic), LOCK_STEP)
-        self._client = ActionClient(self, TrainRun, 'train_run')
+        self._client = ActionClient(self, TrainRun, PLAY_RUN)
 
     async def play(self, goal: TrainRun.Goal, sim: SimNode, timeout_s: float = _READY_S) -> None:
         """Have the agent play, once everything that the sim publishes is heard here.
@@ -74,7 +75,7 @@ class EvaluationNode(Node):
             fault = unheard(sim.publishers, listeners)
             raise GraphError(f'{fault} after {timeout_s:g} s, expected that of this node')
         if not await until_true(self, self._client.server_is_ready, timeout_s):
-            action = self.resolve_topic_name('train_run')
+            action = self.resolve_topic_name(PLAY_RUN)
             raise GraphError(f'action {action}: no server within {timeout_s:g} s, expected agent')
         handle = await until(self._client.send_goal_async(goal))
         if not handle.accepted:
@@ -127,7 +128,7 @@ def episodes_on_graph(checkpoint: Path, starts: int, seed: int) -> Iterator[Epis
 
 def _make_nodes() -> tuple[SimNode, CpgNode, AgentNode, EvaluationNode]:
     """Make a worker without recorder, and who evaluates it."""
-    return SimNode(), CpgNode(), AgentNode(), EvaluationNode()
+    return SimNode(), CpgNode(), AgentNode(action=PLAY_RUN), EvaluationNode()
 
 
 def _spin_until_heard(executor: Executor, node: EvaluationNode, played: Future) -> bool:

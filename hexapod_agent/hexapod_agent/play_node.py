@@ -21,6 +21,7 @@ from rclpy.node import Node
 from rclpy.task import Future
 
 from hexapod_agent import real_time
+from hexapod_agent.action_names import PLAY_RUN, TRAIN_RUN
 from hexapod_agent.deployment import DeployedAgent
 
 PARAMETERS = (
@@ -58,7 +59,9 @@ class PlayNode(Node):
             start(self._play.begin()).add_done_callback(self._on_begun)
         else:
             goal = self._goal()
-            self._client = ActionClient(self, TrainRun, 'train_run')
+            # The launch file's own worker is not for hire; one that is will do.
+            names = (PLAY_RUN, TRAIN_RUN)
+            self._actions = {name: ActionClient(self, TrainRun, name) for name in names}
             start(self._have_played(goal)).add_done_callback(self._on_played)
 
     def _value(self, name: str) -> Any:
@@ -93,16 +96,20 @@ class PlayNode(Node):
             RuntimeError: there is no worker, it is busy, or it ended the run early.
         """
         timeout_s = self.get_parameter('worker_timeout').value
-        if not await until_true(self, self._client.server_is_ready, timeout_s):
-            name = self.resolve_topic_name('train_run')
-            raise RuntimeError(f'no worker offers {name} after {timeout_s:g} s, expected one')
-        handle = await until(self._client.send_goal_async(goal))
+        if not await until_true(self, self._present, timeout_s):
+            names = ' or '.join(self.resolve_topic_name(name) for name in self._actions)
+            raise RuntimeError(f'no worker offers {names} after {timeout_s:g} s, expected one')
+        client = next(c for c in self._actions.values() if c.server_is_ready())
+        handle = await until(client.send_goal_async(goal))
         if not handle.accepted:
             raise RuntimeError('the worker is busy, expected it to be free')
         result = (await until(handle.get_result_async())).result
         if result.message:
             raise RuntimeError(result.message)
         return result
+
+    def _present(self) -> bool:
+        return any(client.server_is_ready() for client in self._actions.values())
 
     def _on_begun(self, begun: Future) -> None:
         error = begun.exception()

@@ -265,7 +265,13 @@ def _check_keys(base: Mapping[str, Any], changes: Any, source: str, prefix: str)
 
 def add_spec_options(parser: CommandLine) -> None:
     """Give a command line the options that say what a run is, for `RunSpec.load`."""
-    parser.add_argument('--config', type=file, help='YAML file of changes to article.yaml')
+    parser.add_argument(
+        '--config',
+        '--hyperparameters',  # its name before the sensors were in it
+        type=file,
+        metavar='FILE',
+        help='YAML file of changes to article.yaml',
+    )
     parser.add_argument(
         '--set',
         action='append',

@@ -9,6 +9,7 @@ import os
 import signal
 from functools import partial
 
+from hexapod_agent.action_names import TRAIN_RUN
 from hexapod_agent.agent_node import AgentNode
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
@@ -42,7 +43,7 @@ class CaseNode(Node):
         super().__init__('case')
         self.exit_status: int | None = None
         self._row, self._settings = row, settings
-        client = ActionClient(self, TrainRun, 'train_run')
+        client = ActionClient(self, TrainRun, TRAIN_RUN)
         self._worker = WorkerPeer(self, client, self.get_namespace(), stall_s)
         start(self._train()).add_done_callback(self._on_end)
 

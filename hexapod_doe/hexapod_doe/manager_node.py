@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticStatus
+from hexapod_agent.action_names import TRAIN_RUN
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import CampaignStatus
 from hexapod_node.coroutines import sleep, start
@@ -30,6 +31,7 @@ from hexapod_doe.campaigns.campaign import Campaign, Row, RunSettings
 from hexapod_doe.campaigns.campaign_lock import campaign_lock
 from hexapod_doe.campaigns.dashboard import Dashboard
 from hexapod_doe.campaigns.failures import FailureLog
+from hexapod_doe.campaigns.forecast import forecast
 from hexapod_doe.campaigns.local_workers import LocalWorkers
 from hexapod_doe.campaigns.messages import train_goal
 from hexapod_doe.campaigns.page_writer import PageWriter
@@ -96,7 +98,7 @@ class ManagerNode(Node):
             plan, self._parameter('attempts'), self._settings.expected()
         )
         self._campaign.check_own()
-        keep_config(self._campaign.directory, self._settings.config)
+        keep_config(self._campaign.directory, self._settings.loaded())
         self._failures = FailureLog(self._campaign.directory)
         self._failures.clear()
         self._workers: dict[str, WorkerPeer] = {}
@@ -110,11 +112,12 @@ class ManagerNode(Node):
             self._dashboard.log(f'{run_id} is trained anew: {damage}')
         self._page = PageWriter(self._campaign.directory, self._dashboard.log)
         self._status_publisher = self.create_publisher(CampaignStatus, '~/status', LATCHED)
-        self._local = LocalWorkers(
-            0 if self._campaign.finished else self._worker_count(),
-            self._parameter('worker_command'),
-            self._campaign.directory / 'logs',
-        )
+        count = 0 if self._campaign.finished else self._worker_count()
+        if due := len(self._campaign.rows) - len(self._campaign.done):
+            length, config = self._settings.episodes, self._settings.loaded()
+            self._dashboard.log(forecast(due, length, count, config))
+        logs = self._campaign.directory / 'logs'
+        self._local = LocalWorkers(count, self._parameter('worker_command'), logs)
         call_every(self, _TICK_S, self._on_tick)
         self._publish_status()
         Diagnostics(self, self._health)
@@ -155,8 +158,15 @@ class ManagerNode(Node):
 
     def _discover(self) -> None:
         for action, types in get_action_names_and_types(self):
-            name = action.rsplit('/', 1)[0] or '/'
-            if _ACTION in types and name not in self._workers and name not in self._buried:
+            name, _, kind = action.rpartition('/')
+            name = name or '/'
+            # One that is there to play offers its action by another name.
+            if (
+                kind == TRAIN_RUN
+                and _ACTION in types
+                and name not in self._workers
+                and name not in self._buried
+            ):
                 client = ActionClient(self, TrainRun, action)
                 worker = WorkerPeer(self, client, name, self._parameter('stall_timeout'))
                 self._workers[name] = worker

@@ -14,6 +14,7 @@ from hexapod_sim.command_line import one_line
 from hexapod_doe.campaigns.campaign import PLAN_FILE
 from hexapod_doe.campaigns.next_steps import CONFIRM_FOLDER, after_confirm
 from hexapod_doe.campaigns.plan_guard import check_free
+from hexapod_doe.designs.aberration import aberration_note
 from hexapod_doe.designs.aliases import (
     alias_sets,
     defining_relation,
@@ -59,6 +60,8 @@ def _make(args: argparse.Namespace) -> None:
         blocks=blocks,
         confirmation=Confirmation(args.confirm_runs, args.confirm_level),
     )
+    if note := aberration_note(design):
+        print(note)
     if blocks:
         hidden = confounded_with_blocks(design.levels, design.factors, blocks)
         print(f'Blocks hide: {"; ".join(hidden)}')
@@ -119,6 +122,8 @@ def _aliases(args: argparse.Namespace) -> None:
     else:
         design = _design(args)
         levels, factors = design.levels, design.factors
+        if note := aberration_note(design):
+            print(note)
     words = defining_words(levels, factors)
     print(f'{len(levels)} cases')
     if words:
@@ -164,7 +169,7 @@ def _power(args: argparse.Namespace) -> None:
 
 
 def _hours(args: argparse.Namespace) -> None:
-    seconds = args.seconds_per_run / args.run_episodes
+    seconds = args.seconds_per_run / (args.run_episodes or args.episodes)
     found = options(Budget(args.hours, seconds, args.workers), args.factors, args.episodes)
     chosen = propose(found)
     print('Proposed:')

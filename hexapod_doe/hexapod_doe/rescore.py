@@ -35,7 +35,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     console.print(_episode_table(rows))
     scored = [row for _, row in rows]
     console.print(_term_table(scored))
-    console.print(_agreement(scored), soft_wrap=True)
+    another = options.task is not None and any(
+        _is_another(bag, options.task) for bag in _bags(options.bag)
+    )
+    console.print(_agreement(scored, another), soft_wrap=True)
     if options.json:
         text = json.dumps([_plain(run, row) for run, row in rows], indent=2)
         options.json.write_text(f'{text}\n', encoding='utf-8')
@@ -93,8 +96,19 @@ def _term_table(rows: Sequence[Rescored]) -> Table:
     return table
 
 
-def _agreement(rows: Sequence[Rescored]) -> str:
+def _is_another(path: Path, changes: Path) -> bool:
+    """Whether a file of changes makes another task of the recorded one."""
+    config = recorded_config(BagFile(path))
+    return config.changed_by(changes).task != config.task
+
+
+def _agreement(rows: Sequence[Rescored], another: bool) -> str:
     equal, periods = sum(row.equal for row in rows), sum(len(row.recorded) for row in rows)
+    if another:
+        return (
+            'Another task than the recorded one: the recorded returns stand beside it for '
+            f'comparison ({equal} of {periods} rewards happen to be the same)'
+        )
     return f'{equal} of {periods} recorded rewards come out the same, to the last bit'
 
 

@@ -50,7 +50,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f'run_case: {row.run_id} is trained anew: {state.damage}', file=sys.stderr)
     try:
         with campaign_lock(plan.resolve().parent, shared=True), row_lock(row.bag):
-            keep_config(plan.resolve().parent, args.config)
+            keep_config(plan.resolve().parent, settings.loaded())
             return _train(row, settings, args.stall)
     except (ValueError, OSError) as error:
         print(f'run_case: {one_line(error)}', file=sys.stderr)

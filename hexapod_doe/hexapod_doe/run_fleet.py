@@ -24,10 +24,12 @@ from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.run_spec import RunSpec, add_spec_options
 from hexapod_sim.command_line import CommandLine, file, folder, one_line, whole
 
+from hexapod_doe.bags.run_identity import EPISODES
 from hexapod_doe.campaigns.campaign import Campaign, shared_settings
 from hexapod_doe.campaigns.campaign_lock import campaign_lock
 from hexapod_doe.campaigns.fleet_campaign import FleetCampaign
 from hexapod_doe.campaigns.fleet_processes import train_in_processes
+from hexapod_doe.campaigns.forecast import forecast
 from hexapod_doe.campaigns.plan_copy import keep_config, place_plan
 from hexapod_doe.cores import usable_cores
 
@@ -91,9 +93,12 @@ def _run(args: argparse.Namespace) -> int:
         for run_id, damage in campaign.damaged.items():
             print(f'run_fleet: {run_id} is trained anew: {damage}', file=sys.stderr)
         campaign.check_writable()
-        keep_config(directory, args.config)
+        keep_config(directory, config)
         due = [row.observations for row in campaign.rows if row.run_id not in campaign.done]
         processes = args.processes or (_CORES if is_cpu(args.device) else 1)
+        if due:
+            workers = processes if is_cpu(args.device) else 0
+            print(forecast(len(due), int(shared[EPISODES]), workers, config))
         if processes > 1 and due:
             count = min(processes, len(due))
             for what in train_in_processes(directory, count, _options(plan, args, count, due)):

@@ -14,6 +14,7 @@ from collections import defaultdict
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
+from hexapod_agent.action_names import PLAY_RUN
 from hexapod_agent.agent_node import AgentNode
 from hexapod_agent.checkpoint import load
 from hexapod_agent.observation import ObservationSpec
@@ -82,7 +83,7 @@ class ShadowNode(Node):
             self.create_service(SetParametersAtomically, name, _on_configure)
         # What the agent waits for to be heard; nobody publishes it.
         self.create_subscription(JointTrajectory, 'joint_trajectory', _ignore, LOCK_STEP)
-        self._client = ActionClient(self, TrainRun, 'train_run')
+        self._client = ActionClient(self, TrainRun, PLAY_RUN)
 
     async def play(self, checkpoint: Path, timeout_s: float = _READY_S) -> None:
         """Have the agent of this namespace play every episode.
@@ -92,7 +93,7 @@ class ShadowNode(Node):
                 reason.
         """
         if not await until_true(self, self._client.server_is_ready, timeout_s):
-            action = self.resolve_topic_name('train_run')
+            action = self.resolve_topic_name(PLAY_RUN)
             raise BagError(f'action {action}: no server within {timeout_s:g} s, expected agent')
         goal = TrainRun.Goal(
             run_id='shadow', checkpoint=str(checkpoint.resolve()), episodes=len(self._spans)
@@ -191,7 +192,8 @@ def shadow_on_graph(path: Path, checkpoint: Path, episode: int | None) -> list[C
     if episode is not None:
         spans = [episode_of(episode, spans, bag)]
     with serving(
-        lambda: (ShadowNode(bag, spans, spec), AgentNode()), f'/shadow_{os.getpid()}'
+        lambda: (ShadowNode(bag, spans, spec), AgentNode(action=PLAY_RUN)),
+        f'/shadow_{os.getpid()}',
     ) as (executor, (node, _)):
         played = start(node.play(checkpoint))
         while not played.done():

@@ -140,5 +140,5 @@ def test_without_an_agent_the_shadow_says_so(graph) -> None:
     bag = BagFile(SAMPLE)
     spans = recorded_episodes(bag, Series(bag, COMMAND, COMMAND_TYPE))
     node = graph.add(ShadowNode(bag, spans, ObservationSpec('')))
-    with pytest.raises(BagError, match=r'/train_run: no server within 0\.1 s'):
+    with pytest.raises(BagError, match=r'/play_run: no server within 0\.1 s'):
         graph.result(start(node.play(SAMPLE / 'agent.pt', timeout_s=0.1)))

@@ -118,6 +118,16 @@ def test_hours_become_a_proposal(capsys):
     assert text.count('Instead:') == 3
 
 
+def test_the_measured_run_is_a_whole_training_unless_told(capsys):
+    budget = ['hours', '--hours', '48', '--seconds-per-run', '1200']
+    main(budget)
+    # 48 h are 144 trainings of 20 min: 128 are two of each case of a half.
+    text = capsys.readouterr().out
+    assert text.startswith('Proposed:\nhalf: 64 cases x 2 replicates x 1000 episodes = 42.7 h')
+    main([*budget, '--run-episodes', '1000'])
+    assert capsys.readouterr().out == text
+
+
 @pytest.mark.parametrize(
     ('words', 'message'),
     [
@@ -125,7 +135,7 @@ def test_hours_become_a_proposal(capsys):
         (['--factors', '13'], 'plan: 13 factors: expected 2 to 12'),
         (['fold', '/nowhere/plan.csv', '--on', 'C'], 'plan: /nowhere/plan.csv: no such file'),
         (['power', '--design', 'eighth', '--max-order', '3'], 'plan: 16 runs, 16 parameters'),
-        (['hours', '--hours', '0.001', '--seconds-per-run', '60'], 'plan: 0.001 h pay for'),
+        (['hours', '--hours', '0.0001', '--seconds-per-run', '60'], 'plan: 0.0001 h pay for'),
     ],
 )
 def test_errors_are_one_line(words, message, capsys):

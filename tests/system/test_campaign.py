@@ -109,8 +109,10 @@ def test_what_is_done_is_not_done_again(shell, plan: Path, bags: list[Path]) -> 
 
 
 def test_a_worker_that_never_appears_is_one_clear_error(shell, plan: Path) -> None:
-    # Somebody else who waits for a worker is not one.
+    # Somebody else who waits for a worker is not one, nor is a worker that is there to play.
     shell.start(f'ros2 action send_goal /ghost/train_run {ACTION} {{}}')
+    player = 'ros2 launch hexapod_bringup worker.launch.xml namespace:=follow composed:=true'
+    shell.start(f'{player} for_hire:=false')
     ended = shell.run(f'{manager(shell, 0)} -p worker_timeout:=7.0')
     assert ended.returncode == 1
     assert f'no worker offers the action {ACTION}' in ended.stdout

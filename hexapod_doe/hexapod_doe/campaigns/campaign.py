@@ -109,15 +109,25 @@ class RunSettings:
     record_every: int = 0
     """Every how many episodes all topics are recorded; 0 for never."""
 
+    def loaded(self) -> RunSpec | None:
+        """Return the configuration of the runs; None where the file is on the workers alone.
+
+        Raises:
+            hexapod_agent.run_spec.ConfigError: the file cannot be used.
+        """
+        here = not self.config or Path(self.config).exists()
+        return RunSpec.load(self.config or None) if here else None
+
     def expected(self) -> dict[str, str]:
         """Return what the bag of each run will say of them, see `bags.run_identity.settings`.
 
         Raises:
             hexapod_agent.run_spec.ConfigError: the file cannot be used.
         """
-        if self.config and not Path(self.config).exists():  # the workers have it
+        config = self.loaded()
+        if config is None:
             return settings({'episodes': str(self.episodes)})
-        return shared_settings(RunSpec.load(self.config or None), self.episodes)
+        return shared_settings(config, self.episodes)
 
 
 def shared_settings(config: RunSpec, episodes: int) -> dict[str, str]:

@@ -86,7 +86,7 @@ def _train(folder: Path, progress: Progress, plan: Path) -> str:
     fleet = any(run.worker == _FLEET for run in begun)
     given = {'episodes': str(episodes)} if episodes else {}
     if config := _config(folder, begun):
-        given['hyperparameters' if fleet else 'config'] = config
+        given['config'] = config
     if fleet:
         options = [f'--{key} {value}' for key, value in given.items()]
         return ' '.join([f'{_RUN} run_fleet --plan {_quoted(plan)}', *options])

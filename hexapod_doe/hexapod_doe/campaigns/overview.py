@@ -14,7 +14,7 @@ from rich.table import Table
 from rich.text import Text
 
 from hexapod_doe.campaigns.curves import limits, sparkline, thin
-from hexapod_doe.campaigns.progress import Progress, Run, State, duration
+from hexapod_doe.campaigns.progress import OPEN, Progress, Run, State, duration
 
 _POINTS = 24
 _STYLES = {
@@ -45,6 +45,9 @@ def summary(progress: Progress) -> str:
 def pace(progress: Progress) -> str:
     """Return the rate and the time that is left."""
     rate = progress.episodes_per_second
+    if rate == 0.0 and progress.having(*OPEN):
+        at_work = progress.having(State.RUNNING)
+        return 'no episode has ended yet' if at_work else 'nobody is at work'
     return f'{rate:.2f} episodes/s, {duration(progress.seconds_left)} left'
 
 

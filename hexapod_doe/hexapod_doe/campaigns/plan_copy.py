@@ -9,11 +9,13 @@ import shutil
 import tempfile
 from pathlib import Path
 
+from hexapod_agent.run_spec import RunSpec
+
 from hexapod_doe.campaigns.campaign import PLAN_FILE
 from hexapod_doe.designs.plan_file import PlanError
 
 CONFIG_FILE = 'config.yaml'
-"""Where a campaign's folder has the hyper-parameter file of its runs."""
+"""Where a campaign's folder has the specification of its runs, if that is not article.yaml."""
 
 
 def place_plan(plan: Path, out: Path | None) -> Path:
@@ -42,15 +44,19 @@ def place_plan(plan: Path, out: Path | None) -> Path:
     return there
 
 
-def keep_config(directory: Path, config: str | Path | None) -> None:
-    """Copy the hyper-parameter file of a campaign's runs into its folder, if there is one here.
+def keep_config(directory: Path, config: RunSpec | None) -> None:
+    """Write what a campaign's runs have other than article.yaml into its folder, if it is known.
 
     Raises:
         OSError: the folder cannot be written.
     """
+    if config is None or not config.differences(RunSpec.load()):
+        return
     kept = directory / CONFIG_FILE
-    if config and Path(config).is_file() and not (kept.exists() and kept.samefile(config)):
-        _copy(Path(config), kept)
+    with tempfile.TemporaryDirectory(dir=directory, prefix='.config') as drafts:
+        draft = Path(drafts) / CONFIG_FILE
+        draft.write_text(config.to_text(), encoding='utf-8')
+        draft.replace(kept)
 
 
 def _copy(source: Path, target: Path) -> None:

@@ -112,8 +112,11 @@ class Progress:
 
     @property
     def episodes_per_second(self) -> float:
-        """Rate of all workers that have a run."""
-        return sum((w.episodes_per_second for w in self.workers if w.runs), 0.0)
+        """Rate of all workers that have a run; one that is yet to end an episode has the usual."""
+        rates = [w.episodes_per_second for w in self.workers if w.episodes_per_second > 0.0]
+        usual = sum(rates) / len(rates) if rates else 0.0
+        known = sum((w.episodes_per_second or usual for w in self.workers if w.runs), 0.0)
+        return known + usual * sum(not run.worker for run in self.having(State.RUNNING))
 
     @property
     def seconds_left(self) -> float:

@@ -155,10 +155,13 @@ def _add_hours(parser: argparse.ArgumentParser) -> None:
         type=number(gt=0),
         required=True,
         metavar='S',
-        help='measured time of a run',
+        help='measured time of a run of --run-episodes',
     )
     parser.add_argument(
-        '--run-episodes', type=_COUNT, default=1, metavar='N', help='episodes of the measured run'
+        '--run-episodes',
+        type=_COUNT,
+        metavar='N',
+        help='episodes of the measured run (default: a whole training, as many as --episodes)',
     )
     parser.add_argument(
         '--workers', type=_COUNT, default=1, metavar='N', help='workers side by side'

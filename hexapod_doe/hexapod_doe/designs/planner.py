@@ -5,6 +5,7 @@
 
 from dataclasses import dataclass
 
+from hexapod_doe.designs.aberration import aberration_note
 from hexapod_doe.designs.aliases import alias_sets, clear_interactions, resolution
 from hexapod_doe.designs.catalogue import catalogue_generators, fractions_of
 from hexapod_doe.designs.design import FRACTIONS, Design, factor_letters
@@ -159,6 +160,8 @@ def describe(option: Option, wanted: int = FULL_TRAINING, sigma: float | None = 
     ]
     if mixed:
         lines.append(f'Cannot separate: {"; ".join(mixed)}.')
+    if note := aberration_note(option.design):
+        lines.append(note)
     if option.replicates == 1:
         lines.append('One replicate: the spread between runs of one case stays unknown.')
     if option.episodes < wanted:

@@ -34,4 +34,20 @@ def test_a_folder_without_a_plan_is_one_line(tmp_path, capsys):
     error = capsys.readouterr().err
     assert error.startswith('campaign_status: ')
     assert error.count('\n') == 1
-    assert str(tmp_path) in error
+    assert f'{tmp_path}: a folder without plan.csv' in error
+    assert 'begins one' in error
+    assert main([str(tmp_path / 'none')]) == 2
+    assert 'no such folder' in capsys.readouterr().err
+
+
+def test_a_folder_above_a_campaign_names_it(folder, capsys):
+    (folder.directory / 'mine').mkdir()
+    (folder.directory / 'plan.csv').rename(folder.directory / 'mine' / 'plan.csv')
+    assert main([str(folder.directory)]) == 2
+    assert f'such as {folder.directory}/mine' in capsys.readouterr().err
+
+
+def test_a_campaign_that_nobody_works_at_says_so(folder, capsys):
+    folder.finish('r4')
+    main([str(folder.directory)])
+    assert '3 due; nobody is at work' in capsys.readouterr().out

@@ -52,6 +52,13 @@ def test_a_worker_keeps_its_rate_until_its_next_run_has_an_episode():
     assert worker.episodes_per_second == pytest.approx(0.5)
 
 
+def test_a_run_without_an_episode_yet_has_the_usual_rate():
+    # Its bag tells the worker with its first result.
+    fresh = [Run(name, '', State.RUNNING) for name in ('b', 'c')]
+    assert made(DONE, *fresh).episodes_per_second == pytest.approx(1.0)
+    assert made(*fresh).episodes_per_second == 0.0
+
+
 def test_the_runs_of_a_fleet_add_up():
     runs = [Run(f'f{k}', '', State.RUNNING, '/fleet', 9, [0.0] * k, seconds=2.0) for k in (1, 3)]
     assert made(*runs).episodes_per_second == pytest.approx(2.0)

@@ -137,6 +137,9 @@ def test_command_line(record, tmp_path, capsys):
     (tmp_path / 'other.yaml').write_text('task: {alive_reward: 0.5}')
     out = tmp_path / 'scores.json'
     main([str(tmp_path), '--task', str(tmp_path / 'other.yaml'), '--json', str(out)])
+    told = capsys.readouterr().out
+    assert 'Another task than the recorded one' in told
+    assert 'come out the same' not in told
     (row,) = json.loads(out.read_text())
     assert row['run_id'] == 'walk'
     assert row['terms']['alive'] == 20.0
