@@ -18,5 +18,5 @@ pytestmark = pytest.mark.graph
 def test_without_an_agent_it_says_so(graph) -> None:
     sim = graph.add(SimNode())
     node = graph.add(EvaluationNode())
-    with pytest.raises(GraphError, match=r'action /train_run: no server within 3 s'):
+    with pytest.raises(GraphError, match=r'action /play_run: no server within 3 s'):
         graph.result(start(node.play(TrainRun.Goal(), sim, timeout_s=3.0)))
