@@ -60,8 +60,9 @@ def different(
     if config is not None:
         values |= config.differences(trainer.config)
         if config.letters != trainer.config.letters:
-            values = {k: v for k, v in values.items() if not k.startswith('observations.')}
-            values['observations'] = (config.letters, trainer.config.letters)
+            sets = {'observations': (config.letters, trainer.config.letters)}
+            others = {k: v for k, v in values.items() if not k.startswith('observations.')}
+            values = sets | others  # a message names the first ones
     return [f'{key} is {asked!r} here, {found!r} there' for key, (asked, found) in values.items()]
 
 

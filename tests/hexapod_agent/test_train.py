@@ -100,6 +100,10 @@ def test_the_home_folder_is_known(config_file, tmp_path, monkeypatch):
         (('--observations', 'ABCDE'), "observations is 'ABCDE' here, 'BC' there"),
         (('--seed', 9), 'seed is 9 here, 1 there'),
         (('--config', 'other'), r'learner\.ddpg\.discount is 0\.9 here, 0\.99 there'),
+        (
+            ('--config', 'other', '--seed', 9, '--observations', 'A'),
+            "observations is 'A' here, 'BC' there; seed is 9 here, 1 there; learner.ddpg.discount",
+        ),
         (('--episodes', 1), '--episodes is 1, but the run .* has had 2, expected at least as'),
     ],
 )
