@@ -145,7 +145,7 @@ def _modelled(table: RunTable, state: Pipeline, options: Options) -> Analysis:
         table=table.rows.assign(kept=state.kept),
         curves=table.curves,
         caveats=(*table.caveats, *design_caveats(design), *state.caveats),
-        main_effects=main_effects(table, _error(state)),
+        main_effects=main_effects(table, state.steps[0].fit),
         steps=tuple(step_record(step, aliases) for step in state.steps),
         elimination=removals(state.dropped, aliases),
         transform=state.transform,
@@ -157,12 +157,3 @@ def _modelled(table: RunTable, state: Pipeline, options: Options) -> Analysis:
         choice=ranking[0],
         choice_rule='',
     )
-
-
-def _error(state: Pipeline) -> float | None:
-    """Return the residual standard deviation of the first model that has one, on all rows."""
-    rows = len(state.table.rows)
-    for step in state.steps:
-        if step.fit.s is not None and step.fit.n == rows and not step.transformed:
-            return step.fit.s
-    return None

@@ -99,17 +99,29 @@ class Step:
 
 @dataclasses.dataclass(frozen=True)
 class MainEffect:
-    """Mean response with and without one factor, on the rows named by `Analysis.main_effects`."""
+    """Response with and without one factor, on the rows named by `Analysis.main_effects`.
+
+    Fitted means average the model over all combinations of the other factors, alike for both
+    (least-squares means). Raw means are of the runs that there are: where cases have unequal runs
+    they mix what other factors do into the difference.
+    """
 
     factor: str
+    fitted_with: float | None
+    fitted_without: float | None
+    """None for a factor that the cases cannot tell from others."""
+    se_fitted_with: float | None
+    se_fitted_without: float | None
+    """None if the first model is saturated."""
+    effect: float
+    """Difference of the fitted means; of the raw ones where there are none."""
+    se_effect: float | None
     mean_with: float
     mean_without: float
+    """Raw means."""
     se_mean_with: float | None
     """Standard deviation within the group over the root of its size."""
     se_mean_without: float | None
-    effect: float
-    se_effect: float | None
-    """From the first model, 2s/√N; None if that is saturated."""
 
 
 @dataclasses.dataclass(frozen=True)

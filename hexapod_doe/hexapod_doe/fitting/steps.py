@@ -6,14 +6,14 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-import pandas as pd
 
 from hexapod_doe.analysis.results import MainEffect, Removal, Step
 from hexapod_doe.designs.terms import CONSTANT
 from hexapod_doe.fitting.alias_matrix import partial_aliases, with_partial_aliases
 from hexapod_doe.fitting.elimination import Dropped
-from hexapod_doe.fitting.model import alias_strings
+from hexapod_doe.fitting.model import alias_strings, estimable_terms
 from hexapod_doe.fitting.pipeline import FittedStep
+from hexapod_doe.fitting.regression import Fit, ols
 from hexapod_doe.tables.table import RunTable
 
 
@@ -77,30 +77,53 @@ def aliases_of(
     }
 
 
-def main_effects(table: RunTable, s: float | None) -> tuple[MainEffect, ...]:
-    """Compare the runs with and without each factor.
+def main_effects(table: RunTable, first: Fit) -> tuple[MainEffect, ...]:
+    """Compare the response with and without each factor.
 
     Args:
         table: The runs, none dropped.
-        s: Residual standard deviation for the standard error of the effects.
+        first: The first model, fitted to all of them.
     """
-    return tuple(_main_effect(table.rows[name], table.values, name, s) for name in table.factors)
+    if not set(table.factors) <= set(first.terms):
+        mains = estimable_terms(table.levels, 1, table.all_blocks)
+        first = ols(table.levels, table.values, mains, table.all_blocks)
+    return tuple(_main_effect(table, first, name) for name in table.factors)
 
 
-def _main_effect(
-    level: 'pd.Series[int]', response: np.ndarray, name: str, s: float | None
-) -> MainEffect:
+def _main_effect(table: RunTable, fit: Fit, name: str) -> MainEffect:
+    level, response = table.rows[name], table.values
     with_, without = response[level > 0], response[level < 0]
-    scale = np.sqrt(1 / len(with_) + 1 / len(without))
+    fitted, errors = _fitted_means(fit, name)
     return MainEffect(
         factor=name,
+        fitted_with=fitted[0],
+        fitted_without=fitted[1],
+        se_fitted_with=errors[0],
+        se_fitted_without=errors[1],
+        effect=float(with_.mean() - without.mean()) if fitted[2] is None else fitted[2],
+        se_effect=errors[2],
         mean_with=float(with_.mean()),
         mean_without=float(without.mean()),
         se_mean_with=_standard_error(with_),
         se_mean_without=_standard_error(without),
-        effect=float(with_.mean() - without.mean()),
-        se_effect=None if s is None else float(s * scale),
     )
+
+
+def _fitted_means(fit: Fit, name: str) -> tuple[list[float | None], list[float | None]]:
+    """Return the fitted means with and without a factor, their difference, and all their errors.
+
+    Over all combinations of the other factors the other terms average to zero.
+    """
+    nothing: list[float | None] = [None] * 3
+    if name not in fit.terms:
+        return nothing, nothing
+    points = np.zeros((3, len(fit.terms)))
+    points[:2, fit.terms.index(CONSTANT)] = 1
+    points[:, fit.terms.index(name)] = [1, -1, 2]
+    errors = nothing
+    if fit.s is not None:
+        errors = list(map(float, fit.s * np.sqrt(fit.unscaled_variance(points))))
+    return list(map(float, points @ fit.coef)), errors
 
 
 def _standard_error(values: np.ndarray) -> float | None:

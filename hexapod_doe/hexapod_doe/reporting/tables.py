@@ -101,13 +101,17 @@ def main_effects(analysis: Analysis) -> Table:
     return Table(
         'main_effect_means',
         'Main effects',
-        'Means over all runs, none left out.',
+        'Fitted means over all combinations of the other sensors, by the first model. Raw means '
+        'are of the runs that there are, none left out: where cases have unequal runs, other '
+        'sensors have a part in their difference.',
         {
             'sensor': [f'{e.factor} {names.get(e.factor, "")}'.strip() for e in found],
-            'without': aligned([e.mean_without for e in found], 4),
-            'with': aligned([e.mean_with for e in found], 4),
+            'without': aligned([e.fitted_without for e in found], 4),
+            'with': aligned([e.fitted_with for e in found], 4),
             'effect': aligned([e.effect for e in found], 4, sign=True),
             'standard error': aligned([e.se_effect for e in found], 3),
+            'raw mean without': aligned([e.mean_without for e in found], 4),
+            'raw mean with': aligned([e.mean_with for e in found], 4),
         },
         pd.DataFrame([vars(effect) for effect in found]),
     )

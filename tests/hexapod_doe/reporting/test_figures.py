@@ -33,9 +33,12 @@ def test_main_effects_are_means_with_and_without(campaign):
     table = campaign.table
     for factor in 'ABCDEFG':
         with_, without = (table.loc[table[factor] == level, 'response'] for level in (1, -1))
-        assert own['mean_with'][factor].iloc[0] == pytest.approx(with_.mean())
-        assert own['mean_without'][factor].iloc[0] == pytest.approx(without.mean())
-        assert own['se_mean_with'][factor].iloc[0] == pytest.approx(with_.sem())
+        for kind in ('fitted', 'raw_mean'):  # the same in a balanced campaign
+            assert own[f'{kind}_with'][factor].iloc[0] == pytest.approx(with_.mean())
+            assert own[f'{kind}_without'][factor].iloc[0] == pytest.approx(without.mean())
+        assert own['se_fitted_with'][factor].iloc[0] == pytest.approx(
+            campaign.steps[0].s * np.sqrt(2 / len(table))
+        )
     assert chart.title.startswith('C (body orientation) moves the response most')
     assert len(chart.data) == 14
 

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hexapod_doe.analysis.results import Analysis, MainEffect
-from hexapod_doe.designs.terms import is_interaction, order
+from hexapod_doe.designs.terms import CONSTANT, is_interaction, order
 from hexapod_doe.fitting.alias_matrix import short_alias
 from hexapod_doe.reporting.figures.chart import Chart
 from hexapod_doe.reporting.figures.parts import (
@@ -30,7 +30,7 @@ MAX_INTERACTIONS = 6
 
 
 def main_effects(analysis: Analysis) -> Chart:
-    """Draw the mean response with and without each factor, for every design, with SE bars."""
+    """Draw the fitted mean with and without each factor, for every design, with SE bars."""
     ordered = sorted(analysis.main_effects, key=lambda effect: -abs(effect.effect))
     factors = [effect.factor for effect in ordered]
     rows = [
@@ -57,9 +57,10 @@ def main_effects(analysis: Analysis) -> Chart:
     return Chart(
         'main_effects',
         _main_effects_title(analysis, ordered[0]),
-        'Each pair joins the mean of all runs without a sensor (hollow) to the mean with it '
-        '(filled); bars are one standard error of each mean. Sensors are ordered by the size of '
-        'their effect; the dotted line is the mean of all runs. No run is left out here.',
+        'Each pair joins the fitted mean without a sensor (hollow) to that with it (filled), over '
+        'all combinations of the others; bars are one standard error of each. Sensors are ordered '
+        'by the size of their effect; the dotted line is the mean of all runs. No run is left out '
+        'here.',
         pd.DataFrame(rows),
         draw,
     )
@@ -70,8 +71,7 @@ def interactions(analysis: Analysis) -> Chart | None:
     terms = _interaction_terms(analysis)
     if not terms:
         return None
-    table = analysis.table[analysis.table['kept']]
-    data = pd.concat([_corners(table, term) for term in terms], ignore_index=True)
+    data = pd.concat([_corners(analysis, term) for term in terms], ignore_index=True)
     aliases = analysis.design.aliases
 
     def draw(width: float) -> Figure:
@@ -94,7 +94,7 @@ def interactions(analysis: Analysis) -> Chart | None:
     return Chart(
         'interactions',
         title,
-        'Mean response without and with the first sensor, once without (hollow) and once with '
+        'Fitted mean without and with the first sensor, once without (hollow) and once with '
         '(filled) the second one. Parallel lines mean that the sensors act independently. Each '
         'panel is named by all terms that it may stand for.',
         data,
@@ -105,12 +105,14 @@ def interactions(analysis: Analysis) -> Chart | None:
 def _record(effect: MainEffect) -> dict[str, float | str | None]:
     return {
         'factor': effect.factor,
-        'mean_without': effect.mean_without,
-        'se_mean_without': effect.se_mean_without,
-        'mean_with': effect.mean_with,
-        'se_mean_with': effect.se_mean_with,
+        'fitted_without': effect.fitted_without,
+        'se_fitted_without': effect.se_fitted_without,
+        'fitted_with': effect.fitted_with,
+        'se_fitted_with': effect.se_fitted_with,
         'effect': effect.effect,
         'se_effect': effect.se_effect,
+        'raw_mean_without': effect.mean_without,
+        'raw_mean_with': effect.mean_with,
     }
 
 
@@ -122,8 +124,10 @@ def _draw_design(
     for slot, factor in enumerate(factors):
         effect = effects[factor]
         x = np.array([slot - 0.17, slot + 0.17]) + shift
-        y = [effect.mean_without, effect.mean_with]
-        error = [effect.se_mean_without or 0, effect.se_mean_with or 0]
+        if effect.fitted_without is None or effect.fitted_with is None:
+            continue  # the cases cannot tell it from others
+        y = [effect.fitted_without, effect.fitted_with]
+        error = [effect.se_fitted_without or 0, effect.se_fitted_with or 0]
         axes.plot(x, y, color=colour, linewidth=1.2, zorder=2)
         axes.errorbar(x, y, error, color=colour, linestyle='none', linewidth=1.2, zorder=2)
         axes.plot(x[0], y[0], marker, color=colour, markerfacecolor=SURFACE, zorder=3)
@@ -179,11 +183,24 @@ def _interaction_terms(analysis: Analysis) -> list[str]:
     return sorted(pool, key=lambda term: -abs(sizes[term]))[:limit]
 
 
-def _corners(table: pd.DataFrame, term: str) -> pd.DataFrame:
+def _corners(analysis: Analysis, term: str) -> pd.DataFrame:
+    """Return the fitted means at the four corners of two factors, by the fullest last model."""
     first, second = term[0], term[1]
-    means = table.groupby([first, second])['response'].agg(['mean', 'count']).reset_index()
-    means = means.rename(columns={first: 'first', second: 'second', 'count': 'runs'})
-    return means[means['first'] != 0].assign(term=term)
+    usable = [step for step in analysis.steps if step.scale == 'response' and term in step.terms]
+    step = max(reversed(usable), key=lambda step: len(step.terms))
+    coef = {name: step.coef.get(name, 0.0) for name in (CONSTANT, first, second, term)}
+    table = analysis.table[analysis.table['kept']]
+    return pd.DataFrame(
+        {
+            'first': a,
+            'second': b,
+            'mean': coef[CONSTANT] + a * coef[first] + b * coef[second] + a * b * coef[term],
+            'runs': int(((table[first] == a) & (table[second] == b)).sum()),
+            'term': term,
+        }
+        for a in (-1, 1)
+        for b in (-1, 1)
+    )
 
 
 def _draw_interaction(axes: Axes, corners: pd.DataFrame, term: str) -> None:
