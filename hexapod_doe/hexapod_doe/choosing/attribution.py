@@ -23,6 +23,8 @@ from hexapod_doe.fitting.model import centre_points, corners, labels, model_matr
 
 MAX_EXAMINED = 4096
 """More namings than this are sampled."""
+_CELLS = 4_000_000
+"""Namings times combinations stay below this, if that leaves 256 namings."""
 
 Candidates = Mapping[str, tuple[tuple[str, int], ...]]
 
@@ -92,28 +94,24 @@ def attribute(
         * (model_matrix(grid, [t for t, _ in group]) * [s for _, s in group])
         for term, group in ambiguous.items()
     ]
-    choices = _namings([part.shape[1] for part in parts], rng)
-    fits = np.array(
-        [
-            value(base + sum(part[:, j] for part, j in zip(parts, choice, strict=True)))
-            for choice in choices
-        ]
-    )
-    ranks = np.array([rank_descending(row) for row in fits])
-    winners = Counter(names[i] for i in ranks.argmin(axis=1))
+    limit = int(np.clip(_CELLS // len(grid), 256, MAX_EXAMINED))
+    choices = _namings([part.shape[1] for part in parts], limit, rng)
+    found = _Extremes(len(grid))
+    for choice in choices:
+        found.add(value(base + sum(part[:, j] for part, j in zip(parts, choice, strict=True))))
     return Attribution(
         ambiguous={term: tuple(t for t, _ in group) for term, group in ambiguous.items()},
         partial=partial_aliases(levels, terms),
         attributions=prod(part.shape[1] for part in parts),
         examined=len(choices),
-        winners=dict(winners.most_common()),
+        winners={names[i]: count for i, count in found.winners.most_common()},
         rank_range={
             name: (int(a), int(b))
-            for name, a, b in zip(names, ranks.min(axis=0), ranks.max(axis=0), strict=True)
+            for name, a, b in zip(names, found.best_rank, found.worst_rank, strict=True)
         },
         fit_range={
             name: (float(a), float(b))
-            for name, a, b in zip(names, fits.min(axis=0), fits.max(axis=0), strict=True)
+            for name, a, b in zip(names, found.lowest, found.highest, strict=True)
         },
         safe=tuple(
             name for name, safe in zip(names, alias_safe(levels, terms), strict=True) if safe
@@ -121,11 +119,31 @@ def attribute(
     )
 
 
-def _namings(sizes: Sequence[int], rng: np.random.Generator) -> np.ndarray:
+class _Extremes:
+    """Extremes of fits and ranks over namings, one at a time: all at once are gigabytes."""
+
+    def __init__(self, combinations: int) -> None:
+        self.winners: Counter[int] = Counter()
+        self.lowest = np.full(combinations, np.inf)
+        self.highest = np.full(combinations, -np.inf)
+        self.best_rank = np.full(combinations, combinations)
+        self.worst_rank = np.zeros(combinations, dtype=int)
+
+    def add(self, fits: np.ndarray) -> None:
+        """Take in the fits of one naming (2^k,)."""
+        ranks = rank_descending(fits)
+        self.winners[int(ranks.argmin())] += 1
+        self.lowest = np.minimum(self.lowest, fits)
+        self.highest = np.maximum(self.highest, fits)
+        self.best_rank = np.minimum(self.best_rank, ranks)
+        self.worst_rank = np.maximum(self.worst_rank, ranks)
+
+
+def _namings(sizes: Sequence[int], limit: int, rng: np.random.Generator) -> np.ndarray:
     """Return the choice of a name for each ambiguous term, one naming a row."""
     total = prod(sizes)
-    if total <= MAX_EXAMINED:
+    if total <= limit:
         return np.array(list(product(*map(range, sizes))), dtype=int).reshape(total, len(sizes))
-    sample = rng.integers(0, sizes, (MAX_EXAMINED, len(sizes)))
+    sample = rng.integers(0, sizes, (limit, len(sizes)))
     sample[0] = 0  # the naming that was fitted
     return sample

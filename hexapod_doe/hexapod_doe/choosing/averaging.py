@@ -58,6 +58,8 @@ class ModelSpace:
         self.rotated = q.T @ response
         rest = response - q @ self.rotated
         self.outside = float(rest @ rest)
+        self._gram, self._moments = self.r.T @ self.r, self.r.T @ self.rotated
+        self._total = float(response @ response)
         self.rows = len(response)
         self.absorbed = basis.shape[1]
         columns = matrix[:, 1:]
@@ -81,12 +83,27 @@ class ModelSpace:
         size = int(active.sum()) + 1
         if 2 * size > self.rows - self.absorbed or (self.alike[np.ix_(active, active)]).any():
             return -np.inf
-        try:
-            _, sse, _ = self.solve(active)
-        except linalg.LinAlgError:  # these rows don't tell its terms apart
+        sse = self._sse(np.flatnonzero(np.concatenate([[True], active])))
+        if sse is None:
             return -np.inf
         bic = self.rows * np.log(max(sse, self.floor) / self.rows) + size * np.log(self.rows)
         return float(self._log_prior(active) - bic / 2)
+
+    def _sse(self, columns: np.ndarray) -> float | None:
+        """Return the error sum of squares; None where the rows don't tell the terms apart.
+
+        By the normal equations, which for ±1 columns and a centred response lose no digits that
+        matter and take a tenth of the time: a sampler asks tens of thousands of times.
+        """
+        try:
+            root = np.linalg.cholesky(self._gram[np.ix_(columns, columns)])
+        except np.linalg.LinAlgError:
+            return None
+        diagonal = np.diag(root)
+        if diagonal.min() < 1e-6 * diagonal.max():
+            return None
+        projected = np.linalg.solve(root, self._moments[columns])
+        return max(self._total - float(projected @ projected), 0.0)
 
     def _log_prior(self, active: np.ndarray) -> float:
         total = 0.0
@@ -110,9 +127,6 @@ class ModelSpace:
             raise linalg.LinAlgError('dependent columns')
         projected = q.T @ self.rotated
         rest = self.rotated - q @ projected
-        diagonal = np.abs(np.diag(r))
-        if len(diagonal) <= active.sum() or diagonal.min() < 1e-9 * diagonal.max():
-            raise linalg.LinAlgError('dependent terms')
         inverse = linalg.solve_triangular(r, np.eye(len(r)))
         return inverse @ projected, self.outside + float(rest @ rest), inverse
 

@@ -8,7 +8,8 @@ import pandas as pd
 import pytest
 from hexapod_doe.choosing.averaging import ModelSpace, average
 from hexapod_doe.designs.design import fraction
-from hexapod_doe.fitting.model import corners
+from hexapod_doe.fitting.model import AliasedTermsError, corners
+from hexapod_doe.fitting.regression import ols
 from hexapod_doe.studies.simulated import repeated_levels
 
 
@@ -74,3 +75,19 @@ def test_rows_that_cannot_tell_a_factor_from_the_constant() -> None:
     found = average(levels, y, lambda eta: eta, 0.9, rng)
     assert found.p_active['A'] == 0
     assert found.p_active['B'] + found.p_active['AB'] > 0.9
+
+
+def test_the_quick_error_sum_of_squares_is_that_of_the_fit() -> None:
+    levels = repeated_levels(fraction('quarter'), 2)
+    response = 3500 + np.random.default_rng(8).normal(0, 30, len(levels)) + 20 * levels['C']
+    space = ModelSpace(levels, response.to_numpy())
+    rng = np.random.default_rng(9)
+    for _ in range(20):
+        active = rng.random(len(space.terms)) < 0.15
+        terms = ['1', *np.array(space.terms)[active]]
+        quick = space._sse(np.flatnonzero(np.concatenate([[True], active])))
+        if quick is None:  # two names of one effect
+            with pytest.raises(AliasedTermsError):
+                ols(levels, response.to_numpy(), terms)
+        else:
+            assert quick == pytest.approx(ols(levels, response.to_numpy(), terms).sse, rel=1e-9)
