@@ -99,3 +99,19 @@ def test_no_node_has_a_timer_of_rclpy(file: Path) -> None:
     """They stop for ever after a pause of the process (docs/upstream.md)."""
     assert 'create_timer(' not in file.read_text(encoding='utf-8')
     assert 'create_rate(' not in file.read_text(encoding='utf-8')
+
+
+@pytest.mark.parametrize('file', [*FILES, *SHARED], ids=name)
+def test_every_node_is_one_that_no_peer_can_end(file: Path) -> None:
+    """A handler that fails is an answer (`hexapod_node.handlers`)."""
+    text = file.read_text(encoding='utf-8')
+    if file.name == 'node.py' and 'hexapod_node' in file.parts:
+        return
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.ClassDef):
+            bases = [ast.unparse(base) for base in node.bases]
+            if {'Node', 'LifecycleNode'} & set(bases):
+                assert bases[0] == 'Node'
+                assert 'from hexapod_node.node import Node\n' in text
+            assert not {'ActionServer', 'ActionClient'} & set(bases)
+    assert 'from rclpy.action import ActionClient' not in text

@@ -5,21 +5,24 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Sequence
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import CpgCommand, EpisodeResult
-from hexapod_node.coroutines import CoroutineActionServer, sleep
+from hexapod_node.actions import CoroutineActionServer
+from hexapod_node.coroutines import sleep
 from hexapod_node.diagnostics import Diagnostics, Health
 from hexapod_node.intra_process import LockStepPublisher
+from hexapod_node.node import Node
 from hexapod_node.parameters import Parameter, declare
 from hexapod_node.qos import LOCK_STEP
+from hexapod_node.root import READABLE, ROOT, Root
 from hexapod_node.shared_memory import free_abandoned
 from hexapod_node.spin import run
 from rclpy.action import CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
-from rclpy.node import Node
 
 from hexapod_agent import checkpoint, run_checkpoint
 from hexapod_agent.action_names import PLAY_RUN, TRAIN_RUN
@@ -29,7 +32,7 @@ from hexapod_agent.observation import parse_observations
 from hexapod_agent.peers import Peers
 from hexapod_agent.player import Agent, Player
 from hexapod_agent.policies import trained_policy
-from hexapod_agent.run_spec import RunSpec
+from hexapod_agent.run_spec import ConfigError, RunSpec
 from hexapod_agent.training import Trainer
 
 PARAMETERS = (
@@ -44,7 +47,10 @@ PARAMETERS = (
     Parameter(
         'for_hire', True, f'whether campaigns may give it runs; if not, its action is {PLAY_RUN}'
     ),
+    ROOT,
+    READABLE,
 )
+_MOST_EPISODES = 1_000_000
 
 MakeTrainer = Callable[[RunSpec, int], Trainer]
 
@@ -66,6 +72,7 @@ class AgentNode(Node):
         self.result_publisher = self.create_publisher(EpisodeResult, 'episode_result', LOCK_STEP)
         self.peers = Peers(self, self.timeout_s)
         self.make_trainer = make_trainer
+        self._root = Root(self.get_parameter('root').value, self.get_parameter('readable').value)
         self._run: GraphRun | None = None
         self._reserved = False
         self._last_error = ''
@@ -103,7 +110,8 @@ class AgentNode(Node):
         goal = goal_handle.request
         self._last_error = ''
         try:
-            config, agent = trained(goal) if goal.checkpoint else self._untrained(goal)
+            self._check(goal)
+            config, agent = self._loaded(goal)
             self._run = GraphRun(self, goal_handle, config, agent)
             return await self._run.execute()
         except Exception as error:
@@ -112,6 +120,38 @@ class AgentNode(Node):
             if goal_handle.is_active:
                 goal_handle.abort()
             return TrainRun.Result(message=str(error))
+
+    def _check(self, goal: TrainRun.Goal) -> None:
+        """Make the goal's paths absolute.
+
+        Raises:
+            ValueError: one is not there, or not for a request to name; or there are too many
+                episodes.
+        """
+        if not 1 <= goal.episodes <= _MOST_EPISODES:
+            raise ValueError(f'episodes {goal.episodes}: expected 1 to {_MOST_EPISODES}')
+        for field in ('checkpoint', 'config'):
+            if given := getattr(goal, field):
+                path = self._root.readable(field, given)
+                if not path.is_file():
+                    raise ValueError(f"{field} '{path}' not found, expected a file")
+                setattr(goal, field, str(path))
+        if goal.bag:
+            goal.bag = str(self._root.inside('bag', goal.bag))
+
+    def _loaded(self, goal: TrainRun.Goal) -> tuple[RunSpec, Agent]:
+        """Return what the goal asks for, made of its files.
+
+        Raises:
+            ValueError: a file cannot be used. Why may quote it, so only this machine is told.
+        """
+        try:
+            return trained(goal) if goal.checkpoint else self._untrained(goal)
+        except (CheckpointError, ConfigError) as error:
+            _tell_this_machine(f'run {goal.run_id}: {error}')
+            files = [f"'{path}'" for path in (goal.checkpoint, goal.config) if path]
+            named = ' or '.join(files) or 'the configuration'
+            raise ValueError(f'{named}: cannot be used, this worker prints why') from None
 
     def _untrained(self, goal: TrainRun.Goal) -> tuple[RunSpec, Trainer]:
         config = RunSpec.load(goal.config or self.get_parameter('config').value)
@@ -125,7 +165,10 @@ class AgentNode(Node):
             try:
                 trainer = run_checkpoint.resumed(goal.bag, config, goal.seed, goal.episodes)
             except CheckpointError as error:
-                self.get_logger().warning(f'run {goal.run_id} begins anew: {error}')
+                _tell_this_machine(f'run {goal.run_id}: {error}')
+                self.get_logger().warning(
+                    f'run {goal.run_id} begins anew: its checkpoint cannot be used'
+                )
         return trainer or self.make_trainer(config, goal.seed)
 
     def _health(self) -> Health:
@@ -134,6 +177,11 @@ class AgentNode(Node):
         if self._last_error:
             return DiagnosticStatus.ERROR, self._last_error, {}
         return DiagnosticStatus.OK, 'waiting for a run', {}
+
+
+def _tell_this_machine(text: str) -> None:
+    """Write to this process's own output: the node's log goes to every peer."""
+    print(text, file=sys.stderr, flush=True)
 
 
 def trained(goal: TrainRun.Goal) -> tuple[RunSpec, Agent]:

@@ -16,19 +16,20 @@ from typing import Any
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import StepOutcome
+from hexapod_node.actions import ActionClient
 from hexapod_node.conditions import until_true
 from hexapod_node.coroutines import start, until
 from hexapod_node.matching import unheard
+from hexapod_node.node import Node
 from hexapod_node.qos import LOCK_STEP
 from hexapod_node.raw_topics import message_class
+from hexapod_node.root import root_arguments
 from hexapod_node.spin import serving, spin_once
 from hexapod_node.stamps import to_nanoseconds
 from hexapod_sim.sensor_table import CHANNELS
 from hexapod_sim.sim_node import SimNode
 from nav_msgs.msg import Odometry
-from rclpy.action import ActionClient
 from rclpy.executors import Executor
-from rclpy.node import Node
 from rclpy.task import Future
 
 from hexapod_agent.action_names import PLAY_RUN
@@ -116,7 +117,8 @@ def episodes_on_graph(checkpoint: Path, starts: int, seed: int) -> Iterator[Epis
     goal = TrainRun.Goal(
         run_id='evaluation', checkpoint=str(checkpoint.resolve()), seed=seed, episodes=starts
     )
-    with serving(_make_nodes, f'/evaluate_{os.getpid()}') as (executor, (sim, _, _, node)):
+    namespace, files = f'/evaluate_{os.getpid()}', root_arguments('', checkpoint.resolve())
+    with serving(_make_nodes, namespace, files) as (executor, (sim, _, _, node)):
         played = start(node.play(goal, sim))
         for count in range(starts):
             if not _spin_until_heard(executor, node, played):

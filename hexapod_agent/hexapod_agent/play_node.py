@@ -10,14 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from hexapod_interfaces.action import TrainRun
+from hexapod_node.actions import ActionClient
 from hexapod_node.conditions import until_true
 from hexapod_node.coroutines import start, until
 from hexapod_node.diagnostics import Diagnostics
+from hexapod_node.node import Node
 from hexapod_node.parameters import Parameter, declare
 from hexapod_node.spin import run
 from hexapod_node.sync import REALTIME, SYNC
-from rclpy.action import ActionClient
-from rclpy.node import Node
 from rclpy.task import Future
 
 from hexapod_agent import real_time

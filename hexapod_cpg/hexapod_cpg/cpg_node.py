@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from hexapod_node.diagnostics import Diagnostics, Health
+from hexapod_node.node import Node
 from hexapod_node.parameters import ConfigParameters, Parameter, declare
 from hexapod_node.spin import run
 from hexapod_node.sync import REALTIME, SYNC, max_age, phase
@@ -51,7 +52,7 @@ PARAMETERS = (
 )
 
 
-class CpgNode(LifecycleNode):
+class CpgNode(Node, LifecycleNode):
     """The pattern generator and its mapping to joint angles.
 
     Active, it plays commands. Inactive, it brings the robot to its standing pose and holds it.

@@ -8,18 +8,20 @@ from __future__ import annotations
 import os
 import signal
 from functools import partial
+from pathlib import Path
 
 from hexapod_agent.action_names import TRAIN_RUN
 from hexapod_agent.agent_node import AgentNode
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
+from hexapod_node.actions import ActionClient
 from hexapod_node.conditions import until_true
 from hexapod_node.coroutines import start
+from hexapod_node.node import Node
+from hexapod_node.root import root_arguments
 from hexapod_node.shared_memory import free_abandoned
 from hexapod_node.spin import run
 from hexapod_sim.sim_node import SimNode
-from rclpy.action import ActionClient
-from rclpy.node import Node
 from rclpy.signals import uninstall_signal_handlers
 from rclpy.task import Future
 
@@ -86,7 +88,8 @@ def train_row(row: Row, settings: RunSettings, stall_s: float) -> None:
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'OFF'
     free_abandoned()
     namespace = ['--ros-args', '-r', f'__ns:=/{row.run_id}']
-    run(partial(_make_nodes, row, settings, stall_s), namespace)
+    files = root_arguments(Path(row.bag).resolve().parent, settings.config)
+    run(partial(_make_nodes, row, settings, stall_s), [*namespace, *files])
 
 
 def _make_nodes(row: Row, settings: RunSettings, stall_s: float) -> list[Node]:

@@ -14,9 +14,9 @@ from hexapod_agent.contract.check import check_sensors
 from hexapod_agent.contract.messages import listen_and_check
 from hexapod_agent.contract.report import SensorReport
 from hexapod_node.coroutines import start
+from hexapod_node.node import Node
 from hexapod_node.spin import run
 from hexapod_sim.command_line import one_line
-from rclpy.node import Node
 from rclpy.task import Future
 
 from hexapod_doe.bags.location import user_path

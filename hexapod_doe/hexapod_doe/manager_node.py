@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import shlex
 import time
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -16,18 +17,20 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from hexapod_agent.action_names import TRAIN_RUN
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import CampaignStatus
+from hexapod_node.actions import ActionClient
 from hexapod_node.coroutines import sleep, start
 from hexapod_node.diagnostics import Diagnostics, Health
+from hexapod_node.node import Node
 from hexapod_node.parameters import Parameter, declare
 from hexapod_node.qos import LATCHED
+from hexapod_node.root import root_arguments
 from hexapod_node.shared_memory import free_abandoned
 from hexapod_node.spin import run
 from hexapod_node.timers import call_every
-from rclpy.action import ActionClient, get_action_names_and_types
-from rclpy.node import Node
+from rclpy.action import get_action_names_and_types
 from rclpy.task import Future
 
-from hexapod_doe.campaigns.campaign import Campaign, Row, RunSettings
+from hexapod_doe.campaigns.campaign import RUNS_FOLDER, Campaign, Row, RunSettings
 from hexapod_doe.campaigns.campaign_lock import campaign_lock
 from hexapod_doe.campaigns.dashboard import Dashboard
 from hexapod_doe.campaigns.failures import FailureLog
@@ -59,8 +62,9 @@ PARAMETERS = (
     ),
     Parameter(
         'worker_command',
-        'ros2 run hexapod_bringup worker_node --ros-args -r __ns:=/{name}',
-        'what starts a local worker; {name} stands for its namespace',
+        'ros2 run hexapod_bringup worker_node --ros-args -r __ns:=/{name} {files}',
+        'what starts a local worker; {name} stands for its namespace, {files} for the parameters '
+        'that let it use the folder of the campaign and the file `config`',
     ),
     Parameter(
         'worker_timeout',
@@ -116,8 +120,12 @@ class ManagerNode(Node):
         if due := len(self._campaign.rows) - len(self._campaign.done):
             length, config = self._settings.episodes, self._settings.loaded()
             self._dashboard.log(forecast(due, length, count, config))
+        files = root_arguments(
+            (self._campaign.directory / RUNS_FOLDER).resolve(), self._parameter('config')
+        )
         logs = self._campaign.directory / 'logs'
-        self._local = LocalWorkers(count, self._parameter('worker_command'), logs)
+        command = self._parameter('worker_command')
+        self._local = LocalWorkers(count, command, logs, shlex.join(files))
         call_every(self, _TICK_S, self._on_tick)
         self._publish_status()
         Diagnostics(self, self._health)

@@ -12,13 +12,13 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from hexapod_node.diagnostics import Diagnostics, Health
+from hexapod_node.node import Node
 from hexapod_node.parameters import Parameter, declare
 from hexapod_node.raw_topics import message_class, replay_qos
 from hexapod_node.spin import run
 from hexapod_node.stamps import time_message
 from hexapod_node.timers import Timer, call_later
 from rclpy.duration import Duration
-from rclpy.node import Node
 from rclpy.parameter import Parameter as RclpyParameter
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Trigger

@@ -6,7 +6,6 @@
 from __future__ import annotations
 
 from functools import partial
-from pathlib import Path
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from hexapod_interfaces.msg import EpisodeResult
@@ -14,14 +13,15 @@ from hexapod_interfaces.srv import FinishRecording, RecordEpisode, SecureRecordi
 from hexapod_node.conditions import until_true
 from hexapod_node.coroutine_service import create_coroutine_service
 from hexapod_node.diagnostics import Diagnostics, Health
+from hexapod_node.node import Node
 from hexapod_node.parameters import Parameter, declare
 from hexapod_node.qos import LOCK_STEP
 from hexapod_node.raw_topics import subscribe_raw
+from hexapod_node.root import ROOT, OutsideRootError, Root
 from hexapod_node.spin import run
 from hexapod_node.stamps import time_message, to_nanoseconds
 from hexapod_node.threads import in_thread
 from hexapod_sim.robot import CONTROL_PERIOD_NS
-from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 
 from hexapod_doe.bags.carry_over import open_recording
@@ -40,6 +40,7 @@ def _seconds(name: str, default: float, description: str) -> Parameter:
 
 
 PARAMETERS = (
+    ROOT,
     _seconds(
         'control_period',
         CONTROL_PERIOD_NS * 1e-9,
@@ -70,8 +71,10 @@ class RecorderNode(Node):
         declare(self, PARAMETERS)
         self._recording: Recording | None = None
         self._samples = SampledTopics(self, self._on_sample)
+        self._root = Root(self.get_parameter('root').value)
         self._failure = ''
         """Why nothing more can be recorded of the run."""
+        self._dropped = 0
         create_coroutine_service(self, StartRecording, '~/start', self._on_start)
         create_coroutine_service(self, RecordEpisode, '~/episode', self._on_episode)
         create_coroutine_service(self, SecureRecording, '~/secure', self._on_secure)
@@ -91,11 +94,14 @@ class RecorderNode(Node):
         self, request: StartRecording.Request, response: StartRecording.Response
     ) -> StartRecording.Response:
         """Open the bag of a run."""
-        self._abandon(f'run {request.run_id} begins')
-        bag = Path(request.bag)
         try:
             if not request.run_id or not request.bag:
-                raise BagError(f"run '{request.run_id}', bag '{bag}': expected both to be named")
+                raise BagError(
+                    f"run '{request.run_id}', bag '{request.bag}': expected both to be named"
+                )
+            bag = self._root.inside('bag', request.bag)
+            topics = [self.resolve_topic_name(topic) for topic in request.topics]
+            self._abandon(f'run {request.run_id} begins')
             cut = set_aside(bag, request.takeover)
             if cut is not None:
                 self.get_logger().warning(f'an earlier recording was cut; it is now {cut}')
@@ -109,10 +115,10 @@ class RecorderNode(Node):
                 self.resolve_topic_name(RESULT_TOPIC),
             )
             self._recording, response.kept, last_ns = await in_thread(self, begin)
-        except BagError as error:
+        except (BagError, OutsideRootError) as error:
             response.message = str(error)
             return response
-        self._samples.names = [self.resolve_topic_name(topic) for topic in request.topics]
+        self._samples.names = topics
         self._failure = ''
         response.last = time_message(last_ns)
         response.success = True
@@ -144,9 +150,9 @@ class RecorderNode(Node):
         """Answer once the disk has the first results."""
         try:
             recording = await self._with_results(request.episodes)
-            lacking = recording.lacking(request.episodes)
-            if lacking:
-                raise BagError(f'run {recording.run_id}: no result of episode {lacking[0]} came')
+            lacking = recording.first_lacking(request.episodes)
+            if lacking is not None:
+                raise BagError(f'run {recording.run_id}: no result of episode {lacking} came')
             recording.secure()
             response.success = True
         except BagError as error:
@@ -174,7 +180,9 @@ class RecorderNode(Node):
         """Return the recording once it has so many results, or when none came for too long."""
         recording = self._usable_recording()
         await until_true(
-            self, lambda: not recording.lacking(episodes), self._seconds('result_timeout')
+            self,
+            lambda: recording.first_lacking(episodes) is None,
+            self._seconds('result_timeout'),
         )
         return self._usable_recording()
 
@@ -198,14 +206,23 @@ class RecorderNode(Node):
             recording.add_result(topic, data, result.episode, result.steps)
         except BagError as error:
             self._fail(error)
+        except ValueError as error:
+            self._drop(RESULT_TOPIC, error)
 
     def _on_sample(self, topic: str, data: bytes) -> None:
         if self._recording is None or self._failure:
             return
         try:
             self._recording.add_sample(topic, data)
-        except (BagError, ValueError) as error:
+        except BagError as error:
             self._fail(error)
+        except ValueError as error:
+            self._drop(topic, error)
+
+    def _drop(self, topic: str, error: ValueError) -> None:
+        """Leave out a message that no bag can hold; what a run lacks is found at its end."""
+        self._dropped += 1
+        self.get_logger().warning(f'{topic}: dropped: {error}', throttle_duration_sec=2.0)
 
     # State
 
@@ -243,7 +260,8 @@ class RecorderNode(Node):
         if self._recording is None:
             return DiagnosticStatus.OK, 'idle', {}
         recording = self._recording
-        level = DiagnosticStatus.WARN if recording.incomplete else DiagnosticStatus.OK
+        amiss = recording.incomplete or self._dropped
+        level = DiagnosticStatus.WARN if amiss else DiagnosticStatus.OK
         return (
             level,
             f'recording run {recording.run_id}',
@@ -252,6 +270,7 @@ class RecorderNode(Node):
                 'messages': recording.messages,
                 'episodes': len(recording.results),
                 'sampling': recording.sampling,
+                'dropped': self._dropped,
                 'incomplete': len(recording.incomplete),
             },
         )

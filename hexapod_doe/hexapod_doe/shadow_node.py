@@ -21,17 +21,18 @@ from hexapod_agent.observation import ObservationSpec
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import CpgCommand
 from hexapod_interfaces.srv import ResetEpisode
+from hexapod_node.actions import ActionClient
 from hexapod_node.conditions import until_true
 from hexapod_node.coroutines import start, until
-from hexapod_node.matching import unheard
+from hexapod_node.matching import listeners_of, unheard
+from hexapod_node.node import Node
 from hexapod_node.qos import LOCK_STEP
 from hexapod_node.raw_topics import message_class
+from hexapod_node.root import root_arguments
 from hexapod_node.spin import serving, spin_once
 from hexapod_node.stamps import time_message, to_nanoseconds
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from rcl_interfaces.srv import SetParametersAtomically
-from rclpy.action import ActionClient
-from rclpy.node import Node
 from trajectory_msgs.msg import JointTrajectory
 
 from hexapod_doe.bags.bag_file import BagFile
@@ -124,7 +125,7 @@ class ShadowNode(Node):
         return response
 
     def _answer(self, request: ResetEpisode.Request, response: ResetEpisode.Response) -> None:
-        listeners = dict(zip(request.topics, request.subscriptions, strict=True))
+        listeners = listeners_of(request.topics, request.subscriptions)
         response.message = unheard(self._senders.values(), listeners)
         response.success = not response.message
 
@@ -191,10 +192,13 @@ def shadow_on_graph(path: Path, checkpoint: Path, episode: int | None) -> list[C
     spans = recorded_episodes(bag, Series(bag, COMMAND, COMMAND_TYPE))
     if episode is not None:
         spans = [episode_of(episode, spans, bag)]
+    namespace, files = f'/shadow_{os.getpid()}', root_arguments('', checkpoint.resolve())
     with serving(
-        lambda: (ShadowNode(bag, spans, spec), AgentNode(action=PLAY_RUN)),
-        f'/shadow_{os.getpid()}',
-    ) as (executor, (node, _)):
+        lambda: (ShadowNode(bag, spans, spec), AgentNode(action=PLAY_RUN)), namespace, files
+    ) as (
+        executor,
+        (node, _),
+    ):
         played = start(node.play(checkpoint))
         while not played.done():
             spin_once(executor, _POLL_S)

@@ -13,6 +13,7 @@ from typing import Any
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticStatus
 from hexapod_node.diagnostics import Diagnostics, Health
+from hexapod_node.node import Node
 from hexapod_node.parameters import Parameter, declare
 from hexapod_node.qos import DRIVER, LOCK_STEP
 from hexapod_node.raw_topics import message_class
@@ -21,7 +22,6 @@ from hexapod_node.stamps import time_message, to_nanoseconds
 from hexapod_node.sync import LOCKSTEP, REALTIME
 from hexapod_node.timers import call_every
 from rcl_interfaces.msg import SetParametersResult
-from rclpy.node import Node
 from rclpy.parameter import Parameter as RclpyParameter
 from rclpy.publisher import Publisher
 from rclpy.serialization import serialize_message

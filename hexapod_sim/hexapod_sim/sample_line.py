@@ -60,6 +60,9 @@ class SampleLine(Generic[Item]):
             if self._dropped(stamp_ns):
                 self.lost += 1
             else:
+                # Time went back, or a stamp was wrong: nobody waits for what lies ahead of it.
+                while self._under_way and self._under_way[-1][0] > stamp_ns:
+                    self._under_way.pop()
                 self._under_way.append((stamp_ns, item))
         delivered = []
         arrived_ns = stamp_ns - round(self._timing.delay * 1e9)

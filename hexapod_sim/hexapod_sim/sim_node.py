@@ -13,13 +13,13 @@ from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.diagnostics import Diagnostics, Health
 from hexapod_node.intra_process import LockStepSubscription
 from hexapod_node.invalid_message import fault_kind
-from hexapod_node.matching import unheard
+from hexapod_node.matching import listeners_of, unheard
+from hexapod_node.node import Node
 from hexapod_node.parameters import ConfigParameters, Parameter, declare
 from hexapod_node.spin import run
 from hexapod_node.stamp_gate import DuePeriod
-from hexapod_node.stamps import time_message, to_nanoseconds
+from hexapod_node.stamps import requested_start_ns, time_message, to_nanoseconds
 from hexapod_node.sync import REALTIME, SYNC, max_age, phase
-from rclpy.node import Node
 from trajectory_msgs.msg import JointTrajectory
 
 from hexapod_sim.messages import targets_from_message
@@ -83,7 +83,8 @@ class SimNode(Node):
         self, request: ResetEpisode.Request, response: ResetEpisode.Response
     ) -> ResetEpisode.Response:
         """Put the robot at the seeded start of an episode, a period after the last sample."""
-        listeners = dict(zip(request.topics, request.subscriptions, strict=True))
+        asked_ns = requested_start_ns(request.start)
+        listeners = listeners_of(request.topics, request.subscriptions)
         response.message = unheard(self._topics.all, listeners)
         response.success = not response.message
         if response.success and self._real_time is not None:
@@ -92,7 +93,7 @@ class SimNode(Node):
         if response.success:
             self._task.config = self._config.get()
             outcome = self._task.reset(request.seed)
-            self._now_ns = max(self._now_ns + CONTROL_PERIOD_NS, to_nanoseconds(request.start))
+            self._now_ns = max(self._now_ns + CONTROL_PERIOD_NS, asked_ns)
             self._due.start(self._now_ns)
             self._publish(outcome, self._now_ns)
         response.start = time_message(self._now_ns)

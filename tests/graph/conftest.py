@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 import rclpy
 from hexapod_interfaces.action import TrainRun
+from hexapod_node.root import root_arguments
 from hexapod_node.spin import spin_once
 from rclpy.action import ActionClient
 from rclpy.experimental.events_executor import EventsExecutor
@@ -65,13 +67,16 @@ class Graph:
 @pytest.fixture
 def ros_args() -> list[str]:
     """Return the arguments that every node of the test gets; a module may have its own."""
-    return []
+    return ['--ros-args']
 
 
 @pytest.fixture
-def graph(ros_args: list[str]) -> Iterator[Graph]:
-    """Yield a graph with one helper node; everything in it ends with the test."""
-    rclpy.init(args=ros_args)
+def graph(ros_args: list[str], tmp_path: Path) -> Iterator[Graph]:
+    """Yield a graph with one helper node; everything in it ends with the test.
+
+    Requests may name what is below the test's folder.
+    """
+    rclpy.init(args=[*ros_args, *root_arguments(tmp_path)])
     made = Graph()
     made.add(Node('test'))
     yield made

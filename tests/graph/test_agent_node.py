@@ -129,16 +129,36 @@ def assert_same(left, right) -> None:
     ('change', 'complaint'),
     [
         ({'observations': 'ABX'}, "unknown letter 'X', expected letters of ABCDEFG"),
-        ({'config': '/no/such.yaml'}, "'/no/such.yaml' not found, expected a YAML file"),
+        ({'config': '/no/such.yaml'}, "config '/no/such.yaml': not below"),
+        ({'config': 'TMP/none.yaml'}, "none.yaml' not found, expected a file"),
+        ({'config': 'TMP/wrong.yaml'}, "wrong.yaml': cannot be used, this worker prints why"),
+        ({'bag': '/no/such/bag'}, "bag '/no/such/bag': not below"),
+        ({'bag': 'TMP/../bag'}, "bag': not below"),
+        ({'bag': 'TMP'}, 'not below'),
+        ({'bag': 'TMP/link/bag'}, "bag': not below"),
+        ({'bag': 'TMP/' + 300 * 'a'}, 'File name too long'),
+        ({'episodes': 0}, 'episodes 0: expected 1 to 1000000'),
+        ({'episodes': 2**32 - 1}, 'episodes 4294967295: expected 1 to 1000000'),
     ],
 )
-def test_a_wrong_goal_ends_with_one_clear_error(graph, change, complaint: str) -> None:
+def test_a_wrong_goal_ends_with_one_clear_error(
+    graph, tmp_path, capfd, change, complaint: str
+) -> None:
+    (tmp_path / 'wrong.yaml').write_text('swordfish: {a: 1}\n')
+    (tmp_path / 'link').symlink_to(tmp_path.parent)
     graph.add(AgentNode())
     goal = TrainRun.Goal(run_id='r', observations='A', seed=1, episodes=1)
     for name, value in change.items():
-        setattr(goal, name, value)
+        setattr(
+            goal, name, value.replace('TMP', str(tmp_path)) if isinstance(value, str) else value
+        )
     response = graph.train(goal)
     assert complaint in response.result.message
+    assert 'swordfish' not in response.result.message
+    # What quotes a file goes to the worker's own output, not to the log that every peer hears.
+    output = capfd.readouterr().err
+    assert ('swordfish' in output) == ('wrong' in complaint)
+    assert not any('swordfish' in line for line in output.splitlines() if '[agent]' in line)
 
 
 class Faulty(SimNode):

@@ -12,7 +12,8 @@ from hexapod_interfaces.action import TrainRun
 from hexapod_node.coroutines import start
 from hexapod_sim.sim_node import SimNode
 
-pytestmark = pytest.mark.graph
+# A domain where no other test ever had an agent: rclpy leaves action servers behind.
+pytestmark = [pytest.mark.graph, pytest.mark.usefixtures('own_domain')]
 
 
 def test_without_an_agent_it_says_so(graph) -> None:

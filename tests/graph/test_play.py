@@ -90,12 +90,15 @@ def test_a_config_changes_the_checkpoints_own(graph, path: str, tmp_path) -> Non
     ('change', 'complaint'),
     [
         ({'observations': 'BD'}, "observes 'BC', expected the same or none"),
-        ({'checkpoint': '/no/such.pt'}, "checkpoint '/no/such.pt' not found"),
+        ({'checkpoint': '/no/such.pt'}, "checkpoint '/no/such.pt': not below"),
+        ({'checkpoint': 'TMP/none.pt'}, "none.pt' not found, expected a file"),
     ],
 )
-def test_a_wrong_goal_ends_with_one_clear_error(graph, path, change, complaint: str) -> None:
+def test_a_wrong_goal_ends_with_one_clear_error(
+    graph, path, tmp_path, change, complaint: str
+) -> None:
     graph.add(AgentNode())
     goal = TrainRun.Goal(run_id='p', checkpoint=path, episodes=1)
     for name, value in change.items():
-        setattr(goal, name, value)
+        setattr(goal, name, value.replace('TMP', str(tmp_path)))
     assert complaint in graph.train(goal).result.message

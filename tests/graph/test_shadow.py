@@ -136,6 +136,7 @@ def test_what_cannot_be_shadowed_is_one_line(bag: Path, tmp_path, capsys) -> Non
 SAMPLE = Path(__file__).resolve().parents[2] / 'bags' / 'sample'
 
 
+@pytest.mark.usefixtures('own_domain')  # rclpy leaves action servers of other tests behind
 def test_without_an_agent_the_shadow_says_so(graph) -> None:
     bag = BagFile(SAMPLE)
     spans = recorded_episodes(bag, Series(bag, COMMAND, COMMAND_TYPE))

@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 import pytest
+from builtin_interfaces.msg import Time
 from geometry_msgs.msg import TwistStamped, WrenchStamped
 from hexapod_cpg.messages import OutputMessages
 from hexapod_interfaces.msg import FootContacts, LineOffset, StepOutcome
@@ -192,3 +193,24 @@ def test_the_task_is_configured_by_parameters(rig: Rig) -> None:
     rig.play(to_nanoseconds(rig.reset().start))
     rig.wait(2)
     assert (outcome[1].truncated, outcome[1].cause) == (True, 'time_limit')
+
+
+@pytest.mark.parametrize(
+    ('request_', 'complaint'),
+    [
+        (
+            ResetEpisode.Request(topics=['/odom'], subscriptions=[]),
+            'topics and subscriptions: 1 and',
+        ),
+        (ResetEpisode.Request(start=Time(sec=2**31 - 1)), 'start 2147483647 s: expected 0 to'),
+        (ResetEpisode.Request(start=Time(sec=-1)), 'start -1 s: expected 0 to'),
+    ],
+)
+def test_a_reset_that_makes_no_sense_is_refused_and_costs_nothing(
+    rig: Rig, request_: ResetEpisode.Request, complaint: str
+) -> None:
+    response = rig.graph.call(ResetEpisode, 'sim/reset', request_)
+    assert not response.success
+    assert complaint in response.message
+    assert rig.reset().success
+    assert to_nanoseconds(rig.reset().start) == 2 * robot.CONTROL_PERIOD_NS

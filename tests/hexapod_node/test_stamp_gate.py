@@ -67,3 +67,16 @@ def test_only_the_message_that_is_due_is_admitted() -> None:
     assert due.counts == LockStepCounts(duplicate=1, late=1, out_of_order=2)
     due.stop()
     assert not due.admit(100)
+
+
+def test_wrong_stamps_fill_no_memory_and_cost_no_period() -> None:
+    gate = StampGate(['a'], PERIOD)
+    for stamp in range(10_000):
+        gate.offer('a', 1_000_000 + stamp, 'hostile')
+    gate.offer('a', 100, 'a100')
+    gate.start(100)
+    for stamp in range(10_000):
+        gate.offer('a', 2_000_000 + stamp, 'hostile')
+    gate.offer('a', 125, 'a125')
+    assert len(gate._waiting) <= 64
+    assert [gate.take(), gate.take()] == [{'a': 'a100'}, {'a': 'a125'}]

@@ -86,3 +86,31 @@ def test_a_task_that_raises_ends_the_process_by_a_signal() -> None:
     mended = 'rclpy raises what a task raised: hexapod_node/timers.py may raise, see docs/upstream'
     assert done.returncode < 0, mended
     assert 'raised' not in done.stdout, mended
+
+
+PARAMETER = """
+import rclpy
+from rcl_interfaces.msg import Parameter, ParameterValue
+from rcl_interfaces.srv import SetParameters
+from rclpy.experimental.events_executor import EventsExecutor
+from rclpy.node import Node
+
+rclpy.init()
+node, executor = Node('plain'), EventsExecutor()
+executor.add_node(node)
+client = node.create_client(SetParameters, 'plain/set_parameters')
+request = SetParameters.Request(parameters=[Parameter(name='a', value=ParameterValue(type=10))])
+while not client.service_is_ready():
+    executor.spin_once(timeout_sec=0.05)
+answer = client.call_async(request)
+while not answer.done():
+    executor.spin_once(timeout_sec=0.05)
+print('answered')
+"""
+
+
+def test_a_parameter_of_an_unknown_type_ends_a_node() -> None:
+    done = python(PARAMETER)
+    mended = 'rclpy answers for unknown types: hexapod_node/upstream.py may go'
+    assert 'answered' not in done.stdout, mended
+    assert 'is not a valid' in done.stderr, mended

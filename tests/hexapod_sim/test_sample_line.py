@@ -81,3 +81,10 @@ def test_holding_fills_every_period_with_the_newest_that_arrived(
 def test_what_no_device_does_is_refused(wrong: dict[str, float]) -> None:
     with pytest.raises(ValueError, match='expected none negative'):
         Timing(**wrong)
+
+
+def test_a_stamp_of_the_future_holds_nobody_up() -> None:
+    timing = Timing(delay=0.1)
+    stamps = [*STAMPS[:10], STAMPS[0] + 10**18, *STAMPS[10:40]]
+    found = flat(delivered(timing, stamps=stamps))
+    assert [stamp for stamp, _ in found][-20:] == STAMPS[16:36]

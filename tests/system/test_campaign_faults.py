@@ -18,7 +18,7 @@ from .short_campaign import TWO_RUNS, ShortCampaign
 from .storm import children
 
 pytestmark = pytest.mark.system
-WORKER = 'ros2 run hexapod_bringup worker_node --ros-args -r __ns:=/far'
+WORKER = 'ros2 run hexapod_bringup worker_node --ros-args -p root:=. -r __ns:=/far'
 
 
 @pytest.fixture

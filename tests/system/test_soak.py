@@ -87,7 +87,9 @@ class Client:
 @pytest.fixture
 def client(shell) -> Iterator[Client]:
     rclpy.init()
-    worker = shell.start('ros2 run hexapod_bringup worker_node --ros-args -r __ns:=/soak')
+    worker = shell.start(
+        'ros2 run hexapod_bringup worker_node --ros-args -p root:=. -r __ns:=/soak'
+    )
     made = Client(worker.pid)
     yield made
     made.close()

@@ -27,7 +27,7 @@ pytestmark = pytest.mark.system
 # Shared memory of its own for a host's processes: what the cable does not carry must not arrive.
 ENTER = 'mount -t tmpfs shm /dev/shm && exec "$@"\n'
 EPISODES = 10
-WORKER = 'ros2 run hexapod_bringup worker_node --ros-args -r __ns:=/remote'
+WORKER = 'ros2 run hexapod_bringup worker_node --ros-args -p root:=. -r __ns:=/remote'
 MANAGER = (
     'ros2 run hexapod_doe manager_node --ros-args -p plan:=plan.csv '
     f'-p episodes:={EPISODES} -p record_every:=0 -p config:={{config}} -p local_workers:=1 '

@@ -84,7 +84,7 @@ def find_cut(bag: Path, run_id: str, episodes: int) -> Path | None:
     for cut in cuts_of(bag):
         found = [e.result for e in islice(cut_episodes(cut / f'{bag.name}_0.mcap'), episodes)]
         numbers = [result.episode for result in found if result.run_id == run_id]
-        if numbers == list(range(episodes)):
+        if len(numbers) == episodes and numbers == list(range(len(numbers))):
             return cut
     return None
 

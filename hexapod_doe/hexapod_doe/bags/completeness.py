@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -89,20 +89,19 @@ class EpisodeTally:
         stamps = self._stamps[topic]
         found = set(stamps)
         backward = sum(b < a for a, b in pairwise(stamps))
-        if self._period_ns == 0:
-            due = found
-        else:
-            due = set(range(first_ns, self._end_ns(topic, last_ns) + 1, self._period_ns))
-        missing = due - found
+        due: Collection[int] = found
+        if self._period_ns:  # not a set: a stamp that is wrong may make it as long as time
+            due = range(first_ns, self._end_ns(topic, last_ns) + 1, self._period_ns)
+        on_grid = sum(stamp in due for stamp in found)
         return TopicVerdict(
             topic,
             messages=len(stamps),
             due=len(due),
-            missing=len(missing),
+            missing=len(due) - on_grid,
             duplicate=len(stamps) - len(found),
             out_of_order=backward,
-            stray=len(found - due),
-            first_missing_ns=min(missing, default=0),
+            stray=len(found) - on_grid,
+            first_missing_ns=next((stamp for stamp in due if stamp not in found), 0),
         )
 
     def _end_ns(self, topic: str, last_ns: int) -> int:

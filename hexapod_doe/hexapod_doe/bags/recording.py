@@ -50,6 +50,8 @@ class Recording:
         self.run_id = run_id
         self.results: set[int] = set()
         self.incomplete: list[str] = []
+        self._whole = 0
+        """Every episode before this one has its result."""
         self._period_ns = period_ns
         self._newest_ns = 0
         self._tally: EpisodeTally | None = None
@@ -83,12 +85,14 @@ class Recording:
 
         Raises:
             BagError: the disk refuses.
+            ValueError: the message has no stamp that a bag can hold.
         """
         if episode in self.results:
             return False
+        time_ns = _loggable_ns(data)
         self.results.add(episode)
         self._writer.add_topic(topic)
-        self._writer.write(topic.name, data, stamp_ns(data))
+        self._writer.write(topic.name, data, time_ns)
         self._writer.flush()
         periods = self._sampled.get(episode, steps)
         if self._period_ns and periods != steps:
@@ -114,11 +118,12 @@ class Recording:
 
         Raises:
             BagError: the disk refuses.
+            ValueError: the message has no stamp that a bag can hold.
         """
         if self._tally is None:
             return
         if topic in self._stamped:
-            time_ns = stamp_ns(data)
+            time_ns = _loggable_ns(data)
             self._tally.add(topic, time_ns)
             self._newest_ns = max(self._newest_ns, time_ns)
         else:
@@ -157,9 +162,11 @@ class Recording:
         """
         self._writer.secure()
 
-    def lacking(self, episodes: int) -> list[int]:
-        """Return which of so many episodes have no result yet."""
-        return sorted(set(range(episodes)) - self.results)
+    def first_lacking(self, episodes: int) -> int | None:
+        """Return the first of so many episodes that has no result yet; None if each has one."""
+        while self._whole in self.results:
+            self._whole += 1
+        return self._whole if self._whole < episodes else None
 
     def finish(self, episodes: int, metadata: Mapping[str, str]) -> Path:
         """Close the bag and return it.
@@ -168,11 +175,12 @@ class Recording:
             BagError: an episode lacks its result, so the bag keeps its unfinished name; or the
                 disk refuses.
         """
-        lacking = self.lacking(episodes)
-        if lacking:
+        lacking = self.first_lacking(episodes)
+        if lacking is not None:
+            found = sum(episode < episodes for episode in self.results)
             raise BagError(
-                f'run {self.run_id}: {episodes - len(lacking)} of {episodes} episode results '
-                f'recorded, episode {lacking[0]} is the first to lack; '
+                f'run {self.run_id}: {found} of {episodes} episode results '
+                f'recorded, episode {lacking} is the first to lack; '
                 f'the bag stays {self.abandon()}'
             )
         self._note(metadata, COMPLETE, episodes)
@@ -200,6 +208,13 @@ class Recording:
             'incomplete': '\n'.join(self.incomplete),
             'recording_ended': _now(),
         }
+
+
+def _loggable_ns(data: bytes) -> int:
+    time_ns = stamp_ns(data)
+    if time_ns < 0:
+        raise ValueError(f'stamp {time_ns * 1e-9:.3f} s: before 1970, expected 0 s or later')
+    return time_ns
 
 
 def _now() -> str:

@@ -56,15 +56,18 @@ class _Place:
 class LocalWorkers:
     """Starts one process per worker, starts it again if it dies, and stops them all."""
 
-    def __init__(self, count: int, command: str, logs: Path) -> None:
+    def __init__(self, count: int, command: str, logs: Path, files: str = '') -> None:
         """Start the workers.
 
         Args:
             count: how many.
-            command: what starts a worker; `{name}` stands for its namespace.
+            command: what starts a worker; `{name}` stands for its namespace, `{files}` for
+                the next.
             logs: directory for what they print.
+            files: arguments that say which folder and files it may use.
         """
         self._command = command
+        self._files = files
         self._logs = logs
         logs.mkdir(parents=True, exist_ok=True)
         self._places = [_Place(f'worker_{n + 1}') for n in range(count)]
@@ -113,6 +116,6 @@ class LocalWorkers:
 
     def _start(self, place: _Place) -> None:
         place.lives += 1
-        command = shlex.split(self._command.format(name=place.name))
+        command = shlex.split(self._command.format(name=place.name, files=self._files))
         place.process = children.start(command, self._log(place), {LIFELINE: '1'})
         place.began = time.monotonic()

@@ -16,7 +16,7 @@ from hexapod_interfaces.action import TrainRun
 from hexapod_node.coroutines import sleep
 
 if TYPE_CHECKING:
-    from rclpy.action import ActionClient
+    from hexapod_node.actions import ActionClient
     from rclpy.node import Node
     from rclpy.task import Future
 

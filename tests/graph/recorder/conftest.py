@@ -15,6 +15,7 @@ from hexapod_doe.recorder_node import RecorderNode
 from hexapod_interfaces.msg import CpgCommand, EpisodeResult
 from hexapod_interfaces.srv import FinishRecording, RecordEpisode, StartRecording
 from hexapod_node.qos import LOCK_STEP
+from hexapod_node.root import root_arguments
 from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.parameter import Parameter
 from rosgraph_msgs.msg import Clock
@@ -32,7 +33,7 @@ class Worker:
     """Stands in for sim, CPG and agent: publishes episodes and calls the recorder."""
 
     def __init__(self, **parameters: float) -> None:
-        rclpy.init(args=['--ros-args', '-r', '__ns:=/w0'])
+        rclpy.init(args=['--ros-args', '-r', '__ns:=/w0', *root_arguments('/')])
         self.recorder = RecorderNode()
         for name, value in parameters.items():
             self.recorder.set_parameters([Parameter(name, value=value)])

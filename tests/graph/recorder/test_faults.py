@@ -10,6 +10,7 @@ import time
 import pytest
 from hexapod_doe.bags.run_record import find_bags, read_run
 from hexapod_doe.bags.salvage import salvage
+from rclpy.parameter import Parameter
 from rosbags.highlevel import AnyReader
 
 pytestmark = pytest.mark.graph
@@ -143,3 +144,51 @@ def test_full_disk_ends_the_run_with_the_reason_and_not_the_node(worker, tmp_pat
     worker.report(0, 0, run_id='r2')
     assert worker.finish(1).success
     assert list(read_run(salvage(tmp_path / 'r1')).episodes.index) == [0]
+
+
+def test_stamps_before_1970_are_dropped_and_counted(worker, tmp_path):
+    assert worker.start(tmp_path / 'r1').success
+    assert worker.enable(0).success
+    last_ns = worker.play_episode(0, 20)
+    worker.sample(-1_000_000_000)
+    assert worker.disable(0, last_ns).success
+    worker.report(0, -1_000_000_000)
+    worker.report(0, last_ns)
+    assert worker.finish(1).success
+    assert worker.recorder._dropped == 4  # three samples and a result
+    assert read_run(tmp_path / 'r1').episodes == 1
+
+
+@pytest.mark.parametrize('count', [1, 4_294_967_295])
+def test_counts_of_any_size_are_answered(worker, tmp_path, count):
+    worker.recorder.set_parameters([Parameter('result_timeout', value=0.1)])
+    assert worker.start(tmp_path / 'r1').success
+    response = worker.finish(count)
+    assert not response.success
+    assert f'0 of {count} episode results' in response.message
+
+
+def test_an_episode_may_be_said_to_end_at_any_time(worker, tmp_path):
+    worker.recorder.set_parameters([Parameter('drain_timeout', value=0.1)])
+    assert worker.start(tmp_path / 'r1').success
+    assert worker.enable(0).success
+    worker.play_episode(0, 20)
+    response = worker.disable(0, (2**31 - 1) * 1_000_000_000)
+    assert response.success
+    assert 'missing from' in response.message
+
+
+def test_a_name_that_no_disk_takes_leaves_the_run_under_way_alone(worker, tmp_path):
+    assert worker.start(tmp_path / 'r1').success
+    response = worker.start(tmp_path / ('a' * 300))
+    assert not response.success
+    assert 'File name too long' in response.message
+    worker.report(0, 0)
+    assert worker.finish(1).success
+
+
+def test_a_name_that_leaves_no_room_for_its_ending_is_answered(worker, tmp_path):
+    response = worker.start(tmp_path / ('a' * 250))
+    assert not response.success
+    assert 'File name too long' in response.message
+    assert worker.start(tmp_path / 'r1').success

@@ -123,3 +123,15 @@ def test_verify_names_what_is_not_as_recorded(tmp_path, record):
     file.write_bytes(content)
     with pytest.raises(BagError):
         verify(bag)
+
+
+def test_folders_of_other_names_are_passed_over(tmp_path, record):
+    bag = tmp_path / 'r1'
+    recording = recording_at(bag)
+    record(recording, range(2))
+    recording.abandon()
+    cut = set_aside(bag)
+    for name in ('r1.cut_old', 'r1.cut_', 'r1.cut_1_2', 'r1x.cut_7', 'r1.cut_-3'):
+        (tmp_path / name).mkdir()
+    assert find_cut(bag, 'r1', 2) == cut
+    assert find_cut(bag, 'r1', 4_000_000_000) is None

@@ -82,3 +82,18 @@ def test_description_names_episode_topic_and_numbers():
     assert describe(3, [good, bad]) == [
         'episode 3, /topic: 4 of 5, 2 missing from 0.000 s, 1 duplicate'
     ]
+
+
+@pytest.mark.parametrize('wrong', [0, 2**31 - 1])
+def test_a_stamp_of_any_time_is_told_and_costs_no_memory(wrong):
+    second = 10**9
+    period = 25_000_000
+    tally = EpisodeTally({'/imu': SENSOR}, period)
+    stamps = [1000 * second + period * k for k in range(5)]
+    for stamp in [*stamps, wrong * second]:
+        tally.add('/imu', stamp)
+    (verdict,) = tally.verdicts(stamps[-1])
+    assert verdict.messages == 6
+    assert (verdict.missing > 10_000) if wrong == 0 else (verdict.stray == 1)
+    (verdict,) = tally.verdicts((2**31 - 1) * second)
+    assert verdict.missing > 10**10

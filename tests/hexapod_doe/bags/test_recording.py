@@ -57,7 +57,7 @@ def test_second_result_of_an_episode_is_not_stored(recording, samples):
 def test_episodes_are_compared_by_number(recording, samples):
     for episode in (0, 2):
         recording.add_result(samples.results, samples.serialised_result(episode), episode, 600)
-    assert recording.lacking(4) == [1, 3]
+    assert [recording.first_lacking(count) for count in (1, 4, 4_000_000_000)] == [None, 1, 1]
     with pytest.raises(BagError, match='2 of 4 episode results recorded, episode 1 is the first'):
         recording.finish(4, {})
     with pytest.raises(BagError, match='was not finished'):

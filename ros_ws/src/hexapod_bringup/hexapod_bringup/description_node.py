@@ -12,11 +12,11 @@ from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import TransformStamped
 from hexapod_node.diagnostics import Diagnostics, Health
+from hexapod_node.node import Node
 from hexapod_node.qos import DRIVER, LATCHED
 from hexapod_node.spin import run
 from hexapod_sim.robot import BASE_FRAME, ODOM_FRAME
 from nav_msgs.msg import Odometry
-from rclpy.node import Node
 from scipy.spatial.transform import Rotation
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String

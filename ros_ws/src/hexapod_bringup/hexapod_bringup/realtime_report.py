@@ -23,11 +23,11 @@ from diagnostic_msgs.msg import DiagnosticArray
 from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
 from hexapod_interfaces.srv import ResetEpisode
+from hexapod_node.node import Node
 from hexapod_node.session import begin
 from hexapod_node.tick_meter import LATE_NS
 from hexapod_sim.command_line import CommandLine, file, number
 from rclpy.experimental.events_executor import EventsExecutor
-from rclpy.node import Node
 from rclpy.utilities import try_shutdown
 from rich.console import Console
 from rich.table import Table

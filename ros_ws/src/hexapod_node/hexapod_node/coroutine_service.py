@@ -10,7 +10,6 @@ sending waits for it; any executor serves it.
 
 from __future__ import annotations
 
-import traceback
 from collections.abc import Callable, Coroutine
 from typing import Any
 
@@ -19,6 +18,7 @@ from rclpy.service import Service
 from rclpy.task import Future
 
 from hexapod_node.coroutines import start
+from hexapod_node.handlers import failed
 
 Handler = Callable[[Any, Any], Coroutine[Future, None, Any]]
 
@@ -42,11 +42,7 @@ def create_coroutine_service(node: Node, kind: type, name: str, handler: Handler
 
     def answer(future: Future, header: Any) -> None:
         error = future.exception()
-        if error is None:
-            send(future.result(), header)
-        else:  # the caller runs into its time limit, as if this node had died
-            text = ''.join(traceback.format_exception(error))
-            node.get_logger().fatal(f'{name}: unexpected error, no answer given\n{text}')
+        send(failed(node, kind, name, error) if error else future.result(), header)
 
     service.send_response = send_when_done  # type: ignore[method-assign, assignment]
     return service

@@ -14,8 +14,6 @@ import types
 from collections.abc import Coroutine, Generator
 from typing import Any
 
-from rclpy.action import ActionServer
-from rclpy.action.server import ServerGoalHandle
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.task import Future
@@ -66,13 +64,3 @@ async def sleep(node: Node, seconds: float) -> None:
         await until(done)
     finally:
         timer.cancel()
-
-
-class CoroutineActionServer(ActionServer):
-    """An action server whose execute callback is a coroutine that waits with `until`."""
-
-    def notify_execute(self, goal_handle: ServerGoalHandle, execute_callback: Any = None) -> None:
-        """Start the coroutine; the base class gets a callback that has its result at once."""
-        done = start((execute_callback or self._execute_callback)(goal_handle))
-        finish = super().notify_execute
-        done.add_done_callback(lambda future: finish(goal_handle, lambda _: future.result()))

@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 
+from hexapod_node.handlers import failures
 from hexapod_node.timers import call_every
 
 _PERIOD_S = 1.0
@@ -31,6 +32,10 @@ class Diagnostics:
     def publish(self) -> None:
         """Publish the present state."""
         level, text, values = self._health()
+        if failed := failures(self._node):
+            values = {**values, **{f'{name}.failed': count for name, count in failed.items()}}
+            text = f'{text}; handlers failed: {", ".join(sorted(failed))}'
+            level = max(level, DiagnosticStatus.WARN)
         status = DiagnosticStatus(
             level=level,
             name=f'{self._node.get_fully_qualified_name()}: state',

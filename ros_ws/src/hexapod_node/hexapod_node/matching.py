@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Protocol
 
 from rclpy.node import Node
@@ -38,6 +38,20 @@ def unheard(publishers: Iterable[Heard], listeners: Mapping[str, int]) -> str:
         if matched.get(topic, least) < least:
             return f'{topic} has {matched[topic]} of {least} subscriptions'
     return ''
+
+
+def listeners_of(topics: Sequence[str], subscriptions: Sequence[int]) -> dict[str, int]:
+    """Return the least number of subscriptions by topic, as a request for a reset lists them.
+
+    Raises:
+        ValueError: the lists are of unequal length.
+    """
+    if len(topics) != len(subscriptions):
+        raise ValueError(
+            f'topics and subscriptions: {len(topics)} and {len(subscriptions)} entries, expected '
+            'as many of each'
+        )
+    return dict(zip(topics, subscriptions, strict=True))
 
 
 def listening_nodes(node: Node, topic: str) -> int:

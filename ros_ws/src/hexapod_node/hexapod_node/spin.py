@@ -117,18 +117,21 @@ def spin(nodes: Sequence[Node]) -> int:
 
 
 @contextmanager
-def serving(make: Callable[[], Nodes], namespace: str) -> Iterator[tuple[Executor, Nodes]]:
+def serving(
+    make: Callable[[], Nodes], namespace: str, arguments: Sequence[str] = ()
+) -> Iterator[tuple[Executor, Nodes]]:
     """Serve nodes for as long as the context lasts, whenever `spin_once` is called.
 
     Args:
         make: makes them; what it raises ends the context.
         namespace: of the nodes.
+        arguments: further ROS arguments for them.
 
     Raises:
         SystemExit: with status 0, after a signal.
     """
     before = signals.take_over()
-    begin(['--ros-args', '-r', f'__ns:={namespace}'])
+    begin(['--ros-args', '-r', f'__ns:={namespace}', *arguments])
     executor = EventsExecutor()
     made: list[Node] = []
     try:

@@ -9,6 +9,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from typing import Any
 
+# Two are under way in lock-step: more come of wrong stamps, which may not fill the memory.
+_MOST_PERIODS = 64
+
 
 @dataclass
 class LockStepCounts:
@@ -84,7 +87,10 @@ class StampGate:
         self._waiting = {ns: had for ns, had in self._waiting.items() if ns >= stamp_ns}
 
     def offer(self, topic: str, stamp_ns: int, message: Any) -> bool:
-        """Take a message; return whether the expected period is now complete."""
+        """Take a message; return whether the expected period is now complete.
+
+        Of periods that have not begun, the earliest few wait for their turn.
+        """
         expected = self.expected_ns
         if expected is not None and stamp_ns < expected:
             self.counts.late += 1
@@ -96,7 +102,13 @@ class StampGate:
         if expected is not None and stamp_ns > expected:
             self.counts.out_of_order += 1
         had[topic] = message
+        if len(self._waiting) > _MOST_PERIODS:
+            self.counts.late += len(self._waiting.pop(self._dispensable()))
         return stamp_ns == expected and len(had) == len(self.topics)
+
+    def _dispensable(self) -> int:
+        """Return the stamp to forget: the last, or, before `start`, the one that came first."""
+        return next(iter(self._waiting)) if self.expected_ns is None else max(self._waiting)
 
     @property
     def complete(self) -> bool:

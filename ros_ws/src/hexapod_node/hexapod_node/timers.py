@@ -25,7 +25,7 @@ from hexapod_node import progress
 Callback = Callable[[], object]
 _SECOND_NS = 1_000_000_000
 # A node that nobody serves yet is looked at again so soon.
-_UNSERVED_S = 0.01
+_UNSERVED_NS = 10_000_000
 _LONGEST_WAIT_S = 3600.0
 
 _failures: deque[BaseException] = deque()
@@ -70,14 +70,19 @@ class Timer:
             self.ring()
 
     def ring(self) -> None:
-        """Hand the call to the node's executor, or wait for one; called by the alarm's thread."""
+        """Hand the call to the node's executor, or wait for one; any thread may do so."""
         node = self._node()
         if node is None or self._callback is None:
             return
-        if not _post(node, self._serve):
-            _alarm.add(time.monotonic_ns() + int(_UNSERVED_S * _SECOND_NS), self)
+        executor = node.executor
+        if executor is None:
+            _alarm.add(time.monotonic_ns() + _UNSERVED_NS, self)
+        else:
+            # An executor that ends keeps the tasks that it has not served: none may keep a node.
+            executor.create_task(_serve, ref(self))
 
-    def _serve(self) -> None:
+    def serve(self) -> None:
+        """Make the call; called by the executor."""
         callback = self._callback
         if callback is None:
             return
@@ -88,6 +93,17 @@ class Timer:
             self._due_ns += (late_ns // self._period_ns + 1) * self._period_ns
             self._wait()
         callback()
+
+
+def _serve(timer: ReferenceType[Timer]) -> None:
+    """Serve a timer that is still wanted, and keep what it raises: a task must not raise."""
+    progress.served()
+    wanted = timer()
+    if wanted is not None:
+        try:
+            wanted.serve()
+        except BaseException as error:
+            _failures.append(error)
 
 
 def call_later(node: Node, seconds: float, callback: Callback) -> Timer:
@@ -113,8 +129,7 @@ def call_every(
 
 def call_soon(node: Node, callback: Callback) -> None:
     """Have a node's executor call after what else is due; any thread may ask for it."""
-    if not _post(node, callback):
-        call_later(node, _UNSERVED_S, callback)
+    Timer(node, callback, 0)
 
 
 def cancel_all(node: Node) -> None:
@@ -137,23 +152,6 @@ def _timers_of(node: Node) -> set[Timer]:
     """Return the timers that a node owns: held by it alone, they go when it goes."""
     timers: set[Timer] = vars(node).setdefault('_hexapod_timers', set())
     return timers
-
-
-def _post(node: Node, callback: Callback) -> bool:
-    """Hand a call to the node's executor; return whether it has one."""
-    executor = node.executor
-    if executor is None:
-        return False
-    executor.create_task(_call, callback)
-    return True
-
-
-def _call(callback: Callback) -> None:
-    progress.served()
-    try:
-        callback()
-    except BaseException as error:
-        _failures.append(error)
 
 
 class _Alarm:
