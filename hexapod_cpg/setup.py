@@ -21,7 +21,7 @@ setup(
     zip_safe=False,
     entry_points={
         'console_scripts': [
-            'cpg_node = hexapod_cpg.cpg_node:main',
+            'cpg_node = hexapod_cpg.executables:cpg_node',
         ],
     },
 )

@@ -26,9 +26,9 @@ setup(
     zip_safe=False,
     entry_points={
         'console_scripts': [
-            'manager_node = hexapod_doe.manager_node:main',
-            'recorder_node = hexapod_doe.recorder_node:main',
-            'player_node = hexapod_doe.player_node:main',
+            'manager_node = hexapod_doe.executables:manager_node',
+            'recorder_node = hexapod_doe.executables:recorder_node',
+            'player_node = hexapod_doe.executables:player_node',
             'plan = hexapod_doe.plan:main',
             'run_case = hexapod_doe.run_case:main',
             'run_fleet = hexapod_doe.run_fleet:main',

@@ -22,8 +22,8 @@ setup(
     zip_safe=False,
     entry_points={
         'console_scripts': [
-            'sim_node = hexapod_sim.sim_node:main',
-            'fake_driver = hexapod_sim.fake_driver_node:main',
+            'sim_node = hexapod_sim.executables:sim_node',
+            'fake_driver = hexapod_sim.executables:fake_driver_node',
         ],
     },
 )

@@ -27,7 +27,7 @@ SHARED = [
 # the recorder hears.
 TOUCHES_ROS = {
     'messages.py', 'peers.py', 'graph_run.py', 'control_loop.py', 'publishers.py', 'real_time.py',
-    'sampled_topics.py', 'lock_step.py', 'measured_start.py',
+    'executables.py', 'sampled_topics.py', 'lock_step.py', 'measured_start.py',
 }  # fmt: skip
 MESSAGE_PACKAGES = {
     'diagnostic_msgs', 'geometry_msgs', 'hexapod_interfaces', 'hexapod_node', 'nav_msgs',

@@ -28,10 +28,10 @@ setup(
     zip_safe=False,
     entry_points={
         'console_scripts': [
-            'description_node = hexapod_bringup.description_node:main',
+            'description_node = hexapod_bringup.executables:description_node',
             'layout = hexapod_bringup.layout:main',
             'realtime_report = hexapod_bringup.realtime_report:main',
-            'worker_node = hexapod_bringup.worker_node:main',
+            'worker_node = hexapod_bringup.executables:worker_node',
         ],
     },
 )

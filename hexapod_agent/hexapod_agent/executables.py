@@ -1,0 +1,9 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Entry points of the package's nodes; see `hexapod_node.executable`."""
+
+from hexapod_node.executable import executable
+
+agent_node = executable('hexapod_agent.agent_node')
+play_node = executable('hexapod_agent.play_node')

@@ -1,0 +1,8 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Entry points of the package's nodes; see `hexapod_node.executable`."""
+
+from hexapod_node.executable import executable
+
+cpg_node = executable('hexapod_cpg.cpg_node')

@@ -1,0 +1,10 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Entry points of the package's nodes; see `hexapod_node.executable`."""
+
+from hexapod_node.executable import executable
+
+manager_node = executable('hexapod_doe.manager_node')
+recorder_node = executable('hexapod_doe.recorder_node')
+player_node = executable('hexapod_doe.player_node')
