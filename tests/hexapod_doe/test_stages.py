@@ -4,6 +4,7 @@
 """Commands that take long say what they are at, and quick ones keep to their result."""
 
 import time
+from pathlib import Path
 
 import pytest
 from hexapod_doe.analyze import main
@@ -11,7 +12,7 @@ from hexapod_doe.stages import stage
 
 from hexapod_doe import stages
 
-GOOD = 'tests/data/cases/good.csv'
+GOOD = Path(__file__).resolve().parents[1] / 'data/cases/good.csv'
 
 
 def test_a_long_stage_is_told_once(capsys) -> None:
@@ -27,12 +28,11 @@ def test_a_quick_stage_and_one_that_fails_say_nothing(capsys) -> None:
     assert capsys.readouterr().err == ''
 
 
-def test_analyze_tells_its_stages(capsys, monkeypatch, tmp_path, request) -> None:
+def test_analyze_tells_its_stages(capsys, monkeypatch, tmp_path) -> None:
     told: list[str] = []
     monkeypatch.setattr(stages.threading, 'Timer', lambda _, tell, args: _Timer(tell, args))
     monkeypatch.setattr(stages, '_tell', told.append)
-    table = request.config.rootpath / GOOD
-    assert main(['--table', str(table), '--response', 'y', '--out', str(tmp_path)]) == 0
+    assert main(['--table', str(GOOD), '--response', 'y', '--out', str(tmp_path)]) == 0
     assert len(told) == 3
     assert all(text.startswith('analyze: ') for text in told)
 
