@@ -13,7 +13,6 @@ What is cut goes on from its checkpoint; what the table holds is not repeated.
 import argparse
 import csv
 import fcntl
-import itertools
 import json
 import os
 import subprocess
@@ -21,130 +20,26 @@ import sys
 import time
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
-import yaml
 from hexapod_agent.env import HexapodLine
 from hexapod_agent.evaluation import Evaluation, run_episode, summarize
-from hexapod_agent.observation import parse_observations
 from hexapod_agent.policies import Policy, constant_policy, trained_policy
 from hexapod_agent.provenance import provenance
-from hexapod_agent.run_spec import ConfigError, RunSpec
+from hexapod_agent.run_spec import ConfigError
 from hexapod_agent.train import train_episode
 from hexapod_agent.training import Trainer
 from hexapod_cpg.mapping import ACTION_SIZE
 from hexapod_sim.command_line import CommandLine, file, folder, whole
-from pydantic import PositiveInt, TypeAdapter, ValidationError
 
 from hexapod_agent import checkpoint
+from hexapod_doe.studies.configuration_study import JUDGEMENT_SEED, Run, Study, letters_of
 from hexapod_doe.studies.configuration_tables import effects, figures
 
 RESULTS = 'results.csv'
-NONE = 'none'  # the set of no optional sensor, in the table and on the command line
-JUDGEMENT_SEED = 1  # of the starts, as `evaluate` has it; no training may have it
-
-
-@dataclass(frozen=True)
-class Factor:
-    """What the two levels of a factor set: values by 'section.key' of a configuration."""
-
-    low: dict[str, Any]
-    high: dict[str, Any]
-
-
-@dataclass(frozen=True)
-class Study:
-    """What to train.
-
-    Attributes:
-        sets: Letters of each set of sensors.
-        seeds: Common to all sets and rows; 1 is that of the judgement.
-        episodes: Length of each training.
-        judged_after: Episodes after which the agent is evaluated; the last one always is.
-        starts: Of an evaluation.
-        config: File of changes to article.yaml that all rows have, beside the study's file.
-        base: Values by dotted key that all rows have.
-        factors: By name.
-        rows: A sign per factor; one row without factors is the base itself.
-    """
-
-    sets: tuple[str, ...]
-    seeds: tuple[PositiveInt, ...]
-    episodes: PositiveInt
-    judged_after: tuple[PositiveInt, ...] = ()
-    starts: PositiveInt = 20
-    config: str | None = None
-    base: dict[str, Any] = field(default_factory=dict)
-    factors: dict[str, Factor] = field(default_factory=dict)
-    rows: tuple[str, ...] = ('',)
-
-    @classmethod
-    def load(cls, path: Path) -> 'Study':
-        """Read and check a study's file.
-
-        Raises:
-            ConfigError: It is missing or no study, or a row's configuration cannot be used.
-        """
-        if not path.is_file():
-            raise ConfigError(f'study {str(path)!r} not found, expected a YAML file')
-        try:
-            study = TypeAdapter(cls).validate_python(yaml.safe_load(path.read_text('utf-8')))
-        except (yaml.YAMLError, ValidationError) as error:
-            raise ConfigError(f'study {str(path)!r}: {error}') from error
-        if study.config:
-            study = replace(study, config=str(path.parent / study.config))
-        study._check(path)
-        return study
-
-    def _check(self, path: Path) -> None:
-        """Refuse what would not train, before anything does."""
-        if JUDGEMENT_SEED in self.seeds:
-            raise ConfigError(
-                f'study {str(path)!r}: seed {JUDGEMENT_SEED} is that of the starts that agents '
-                'are judged from, expected others'
-            )
-        for row in self.rows:
-            if len(row) != len(self.factors) or set(row) - {'+', '-'}:
-                raise ConfigError(
-                    f'study {str(path)!r}: row {row!r}, expected {len(self.factors)} signs + or '
-                    '-, one for each factor'
-                )
-            self.configuration(row)
-        for sensors in self.sets:
-            parse_observations(_letters(sensors))
-
-    def values(self, row: str) -> dict[str, Any]:
-        """Values by dotted key that make a row."""
-        levels = [
-            factor.high if sign == '+' else factor.low
-            for factor, sign in zip(self.factors.values(), row, strict=True)
-        ]
-        return {key: value for level in (self.base, *levels) for key, value in level.items()}
-
-    def configuration(self, row: str) -> RunSpec:
-        """Build what a row trains with; its length is that of the trainings."""
-        config = RunSpec.load(self.config)
-        for key, value in self.values(row).items():
-            config = config.with_value(key, value, f'row {row!r}')
-        return config.with_value('training.episodes', self.episodes, 'episodes')
-
-    def runs(self) -> list['Run']:
-        """Every training, those of a seed together."""
-        combinations = itertools.product(self.seeds, self.rows, self.sets)
-        return [Run(row, letters, seed) for seed, row, letters in combinations]
-
-
-@dataclass(frozen=True)
-class Run:
-    """One training of a study."""
-
-    row: str
-    sensors: str
-    seed: int
 
 
 class Training:
@@ -152,7 +47,7 @@ class Training:
 
     def __init__(self, study: Study, run: Run, out: Path) -> None:
         self._study, self._run, self._out = study, run, out
-        config = study.configuration(run.row).observing(_letters(run.sensors))
+        config = study.configuration(run.row).observing(letters_of(run.sensors))
         signs = run.row.replace('+', 'p').replace('-', 'm')
         self._path = out / f'{signs}_{run.sensors}_{run.seed}.pt'
         self._notes = self._path.with_suffix('.json')
@@ -194,8 +89,7 @@ class Training:
 
     def _line(self, found: Evaluation) -> dict[str, Any]:
         run, config = self._run, self._trainer.config
-        keys = {key for row in self._study.rows for key in self._study.values(row)}
-        values = {key: config.value(key) for key in sorted(keys)}
+        values = {key: config.value(key) for key in self._study.keys}
         return {'row': run.row, **values, 'sensors': run.sensors, 'seed': run.seed} | {
             'episode': self._trainer.episode,
             'starts': found.starts,
@@ -207,10 +101,6 @@ class Training:
             'cpu_s': round(self._seconds, 2),
             'commit': provenance()['git_commit'][:9],
         }
-
-
-def _letters(sensors: str) -> str:
-    return '' if sensors == NONE else sensors
 
 
 def _append(path: Path, lines: list[dict[str, Any]]) -> None:
@@ -225,12 +115,19 @@ def _append(path: Path, lines: list[dict[str, Any]]) -> None:
         os.fsync(file.fileno())
 
 
-def _held(path: Path) -> set[Run]:
-    """Runs whose lines the table holds."""
+def _held(path: Path, columns: Sequence[str]) -> set[Run]:
+    """Runs whose lines the table holds.
+
+    Raises:
+        ConfigError: It is of another study.
+    """
     if not path.exists():
         return set()
     with path.open(newline='') as file:
-        return {Run(r['row'], r['sensors'], int(r['seed'])) for r in csv.DictReader(file)}
+        reader = csv.DictReader(file)
+        if list(reader.fieldnames or ()) != list(columns):
+            raise ConfigError(f'{path}: expected a table of this study, with {", ".join(columns)}')
+        return {Run(r['row'], r['sensors'], int(r['seed'])) for r in reader}
 
 
 def main(args: Sequence[str] | None = None) -> None:
@@ -239,10 +136,10 @@ def main(args: Sequence[str] | None = None) -> None:
     options = parser.parse_args(args)
     try:
         study = Study.load(options.study)
+        held = _held(options.out / RESULTS, study.columns)
     except ValueError as error:  # configuration or observations
         parser.error(str(error))
     options.out.mkdir(parents=True, exist_ok=True)
-    held = _held(options.out / RESULTS)
     missing = [number for number, run in enumerate(study.runs()) if run not in held]
     if options.only is not None:
         Training(study, study.runs()[options.only], options.out).train()

@@ -10,7 +10,8 @@ import pytest
 import yaml
 from hexapod_agent.train import train_episode
 from hexapod_doe.studies import configurations
-from hexapod_doe.studies.configurations import NONE, Run, Study, Training
+from hexapod_doe.studies.configuration_study import NONE, Run, Study
+from hexapod_doe.studies.configurations import Training
 
 SMALL = """
 task: {time_limit_steps: 8}
@@ -95,6 +96,13 @@ def test_a_training_that_was_cut_gives_the_same_line(write, tmp_path, monkeypatc
         Training(study, run, out).train()
         tables.append(pd.read_csv(out / 'results.csv').drop(columns='cpu_s'))
     pd.testing.assert_frame_equal(*tables)
+
+
+def test_a_table_of_another_study_is_refused(write, capsys, tmp_path):
+    (tmp_path / 'results.csv').write_text('row,sensors,seed\n+-,C,5\n')
+    with pytest.raises(SystemExit):
+        configurations.main([str(write()), '--out', str(tmp_path)])
+    assert 'expected a table of this study, with row, ' in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
