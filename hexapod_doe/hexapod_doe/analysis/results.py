@@ -19,6 +19,7 @@ from hexapod_doe.analysis.findings import (
     RankUncertainty,
     TwoPart,
 )
+from hexapod_doe.fitting.anova import AnovaRow
 from hexapod_doe.fitting.blocks import BlockTest
 from hexapod_doe.fitting.curvature import Curvature
 from hexapod_doe.fitting.lenth import Lenth
@@ -84,6 +85,10 @@ class Step:
     df_error: int
     sse: float
     sst: float
+    vif: Mapping[str, float]
+    """How much correlation with other terms swells the variance of each; 1 for none."""
+    anova: tuple[AnovaRow, ...]
+    """Adjusted sums of squares by source; empty without an error."""
     lack_of_fit: LackOfFit | None
     blocks: BlockTest | None
     """Whether the blocks differ; None without blocks."""

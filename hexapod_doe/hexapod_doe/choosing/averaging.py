@@ -189,7 +189,9 @@ def _block_error(
     test = mains.blocks
     if test is None or mains.s is None:
         return np.zeros((draws, 1))
-    return np.sqrt(test.variance(mains.s**2) / test.count) * rng.standard_normal((draws, 1))
+    between = test.ss / rng.chisquare(test.df, draws) - mains.s**2
+    variance = np.maximum(0.0, between) / test.runs / test.count
+    return (np.sqrt(variance) * rng.standard_normal(draws))[:, None]
 
 
 def _gibbs_sweep(space: ModelSpace, active: np.ndarray, rng: np.random.Generator) -> None:

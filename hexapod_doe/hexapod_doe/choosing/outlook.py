@@ -26,6 +26,7 @@ from hexapod_doe.choosing.prediction import back, rank_descending
 from hexapod_doe.choosing.two_part import Parts
 from hexapod_doe.designs.terms import order
 from hexapod_doe.fitting.dispersion import Dispersion, dispersion, relative_deviation
+from hexapod_doe.fitting.left_out import left_out
 from hexapod_doe.fitting.model import corners, labels, model_matrix
 from hexapod_doe.fitting.pipeline import Pipeline
 from hexapod_doe.fitting.regression import Fit, ols
@@ -124,28 +125,26 @@ def _stated(
     grid = corners(state.table.factors)
     points = model_matrix(grid, fit.terms)
     ratio = relative_deviation(grid, state.levels, fit, found)
+    left = left_out(state.levels, fit, grid)
+    coef, s = coefficient_draws(fit, count, rng, found)
+    eta = coef @ points.T + (0 if left is None else left.draw(count, rng))
     return Stated(
         fits=back(points @ fit.coef, state.transform),
-        draws=prediction_draws(fit, points, state.transform, count, rng, found),
-        future_mean=lambda runs: _future_mean(
-            coefficient_draws(fit, count, rng, found), points, ratio, state.transform, runs, rng
-        ),
+        draws=back_draws(eta, state.transform),
+        future_mean=lambda runs: _future_mean(eta, s[:, None] * ratio, state.transform, runs, rng),
     )
 
 
 def _future_mean(
-    drawn: tuple[np.ndarray, np.ndarray],
-    points: np.ndarray,
-    ratio: np.ndarray,
+    eta: np.ndarray,
+    deviation: np.ndarray,
     transform: Transform | None,
     runs: int,
     rng: np.random.Generator,
 ) -> np.ndarray:
-    coef, s = drawn
-    eta = coef @ points.T
     total = np.zeros_like(eta)
     for _ in range(runs):
-        total += back_draws(eta + s[:, None] * ratio * rng.standard_normal(eta.shape), transform)
+        total += back_draws(eta + deviation * rng.standard_normal(eta.shape), transform)
     return total / runs
 
 

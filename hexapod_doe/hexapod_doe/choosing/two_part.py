@@ -20,6 +20,7 @@ from hexapod_doe.designs.terms import is_interaction, order
 from hexapod_doe.fitting.alias_matrix import without_arbitrary
 from hexapod_doe.fitting.dispersion import Dispersion, dispersion, relative_deviation
 from hexapod_doe.fitting.elimination import droppable, eliminate
+from hexapod_doe.fitting.left_out import left_out
 from hexapod_doe.fitting.logistic import LogisticFit, firth
 from hexapod_doe.fitting.model import corners, estimable_terms, independent_terms, model_matrix
 from hexapod_doe.fitting.regression import Fit, ols
@@ -60,6 +61,9 @@ class Parts:
         pi = special.expit(odds @ model_matrix(grid, self.failure_terms).T)
         coef, s = coefficient_draws(self.success, draws, rng, self.dispersion)
         mu = coef @ model_matrix(grid, self.success.terms).T
+        left = left_out(self.levels, self.success, grid)
+        if left is not None:
+            mu = mu + left.draw(draws, rng)
         ratio = relative_deviation(grid, self.levels, self.success, self.dispersion)
         return PartDraws(
             pi, mu, s[:, None] * ratio, _mean_draws(self.failed, draws, rng), self.failed

@@ -20,9 +20,11 @@ from scipy import stats
 from hexapod_doe.analysis.findings import EstimandResult, Estimate
 from hexapod_doe.choosing.estimands import Estimand, estimand, pseudo_values
 from hexapod_doe.choosing.prediction import rank_descending
-from hexapod_doe.fitting.alias_matrix import AliasMatrix, alias_matrix, without_arbitrary
+from hexapod_doe.fitting.alias_matrix import without_arbitrary
+from hexapod_doe.fitting.blocks import BlockTest
+from hexapod_doe.fitting.left_out import left_out
 from hexapod_doe.fitting.model import corners, estimable_terms, labels, model_matrix
-from hexapod_doe.fitting.regression import ols
+from hexapod_doe.fitting.regression import Fit, ols
 from hexapod_doe.tables.table import BLOCK, RunTable
 
 STATED = ('mean', 'iqm', 'best_of:3')
@@ -56,19 +58,22 @@ def estimate(table: RunTable, item: Estimand, level: float) -> EstimandResult:
         level: Confidence of the intervals.
     """
     terms = without_arbitrary(table.levels, estimable_terms(table.levels, 2, table.all_blocks))
-    inverse = np.linalg.pinv(model_matrix(table.levels, terms))
     response = pseudo_values(item, table.values, table.rows['case'])
+    fit = ols(table.levels, response, terms, table.all_blocks)
     grid = corners(table.factors)
-    weights = model_matrix(grid, terms) @ inverse
-    fits = weights @ response
-    half = _half_width(_variances(table, terms, weights, response), level)
+    fits = model_matrix(grid, terms) @ fit.coef
+    parts = _variances(table, fit, grid, response)
+    left = left_out(table.levels, fit, grid)
+    if left is not None:
+        parts.append(_Variance(left.variance, left.df))
+    half = _half_width(parts, level)
     names = labels(grid)
     ranking = [names[i] for i in np.argsort(rank_descending(fits))]
     return EstimandResult(
         name=item.name,
         description=item.description,
         terms=terms,
-        coef=dict(zip(terms, map(float, inverse @ response), strict=True)),
+        coef=dict(zip(terms, map(float, fit.coef), strict=True)),
         predictions={
             name: Estimate(float(fits[i]), (float(fits[i] - half[i]), float(fits[i] + half[i])))
             for i, name in enumerate(names)
@@ -87,28 +92,39 @@ def _half_width(parts: Sequence[_Variance], level: float) -> np.ndarray:
 
 
 def _variances(
-    table: RunTable, terms: Sequence[str], weights: np.ndarray, response: np.ndarray
+    table: RunTable, fit: Fit, grid: pd.DataFrame, response: np.ndarray
 ) -> list[_Variance]:
     """Return what the predictions vary by.
 
     Args:
         table: The runs (n).
-        terms: Terms of the model.
-        weights: Of each run in each prediction (m, n).
+        fit: The model.
+        grid: Coded levels of what is predicted (m rows).
         response: What is estimated, per run (n,).
     """
-    case = table.rows.groupby('case').ngroup().to_numpy()
+    points = model_matrix(grid, fit.terms)
     block = _complete_blocks(table)
-    free, between = response, None
-    if block is not None:
-        means = np.bincount(block, response) / np.bincount(block)
-        free, between = response - means[block], means
-    within, mean_square = _within_cases(weights, free, case, 0 if between is None else 1)
-    parts = [within]
-    if between is not None:
-        parts.append(_between_blocks(between, mean_square, int(case.max()) + 1, len(weights)))
-    left_out = _left_out(table, terms, response)
-    return parts if left_out is None else [*parts, left_out]
+    if fit.blocks is not None and block is None:
+        return _within_blocks(fit, fit.blocks, points)
+    weights = points @ np.linalg.pinv(model_matrix(table.levels, fit.terms))
+    case = table.rows.groupby('case').ngroup().to_numpy()
+    if block is None:
+        return [_within_cases(weights, response, case, 0)[0]]
+    means = np.bincount(block, response) / np.bincount(block)
+    within, mean_square = _within_cases(weights, response - means[block], case, 1)
+    return [within, _between_blocks(means, mean_square / len(block), len(points))]
+
+
+def _within_blocks(fit: Fit, blocks: BlockTest, points: np.ndarray) -> list[_Variance]:
+    """Return the parts of blocks that don't hold every case alike: one variance for all runs."""
+    error = (fit.s or 0) ** 2
+    value = blocks.variance(error) / blocks.count
+    share = value / (blocks.mean_square / blocks.runs / blocks.count) if value else 1.0
+    between = np.full(len(points), value)
+    return [
+        _Variance(error * fit.unscaled_variance(points), float(fit.df_error)),
+        _Variance(between, blocks.df * share**2),
+    ]
 
 
 def _within_cases(
@@ -139,43 +155,25 @@ def _within_cases(
 
 
 def _complete_blocks(table: RunTable) -> np.ndarray | None:
-    """Return the number of each run's block if every case has one run of every block (n,)."""
+    """Return the number of each run's block if every case is in all blocks alike (n,)."""
     if not table.block_column:
         return None
     counts = pd.crosstab(table.rows['case'], table.rows[BLOCK])
-    return pd.factorize(table.rows[BLOCK])[0] if (counts == 1).all(axis=None) else None
+    alike = counts.gt(0) & counts.eq(counts.iloc[:, 0], axis=0)
+    return pd.factorize(table.rows[BLOCK])[0] if alike.all(axis=None) else None
 
 
-def _between_blocks(means: np.ndarray, mean_square: float, cases: int, points: int) -> _Variance:
+def _between_blocks(means: np.ndarray, error: float, points: int) -> _Variance:
     """Return the variance of the mean over blocks, which all predictions share.
 
-    σ²_block/B with σ²_block = (MS_block − s²)/cases, where that is positive.
+    σ²_block/B, from the variance of the block means less what runs of one block explain of it.
+
+    Args:
+        means: Of the blocks (B,).
+        error: Variance of the mean of all runs by that within cases.
+        points: How many predictions there are.
     """
-    blocks = len(means)
-    total = float(means.var(ddof=1)) / blocks
-    value = max(0.0, total - mean_square / (cases * blocks))
-    df = (blocks - 1) * (value / total) ** 2 if value else 1.0
+    total = float(means.var(ddof=1)) / len(means)
+    value = max(0.0, total - error)
+    df = (len(means) - 1) * (value / total) ** 2 if value else 1.0
     return _Variance(np.full(points, value), df)
-
-
-def _left_out(table: RunTable, terms: Sequence[str], response: np.ndarray) -> _Variance | None:
-    """Return what interactions add that the cases cannot tell apart; None if they can.
-
-    They are taken for random with the variance τ² that the lack of fit shows: a prediction is off
-    by Σβⱼ·(xⱼ − x'Aⱼ), A the alias matrix.
-    """
-    matrix = alias_matrix(table.levels, terms)
-    lack = ols(table.levels, response, terms, table.all_blocks).lack_of_fit
-    if not matrix.arbitrary or lack is None:
-        return None
-    off = _not_held(table.levels, matrix)
-    excess = lack.ss_lack_of_fit - lack.df_lack_of_fit * lack.ss_pure_error / lack.df_pure_error
-    tau = max(0.0, excess) / float((off**2).sum())
-    reach = (_not_held(corners(table.factors), matrix) ** 2).sum(axis=1)
-    return _Variance(tau * reach, float(lack.df_lack_of_fit))
-
-
-def _not_held(levels: pd.DataFrame, matrix: AliasMatrix) -> np.ndarray:
-    """Return what of each omitted term's column the estimated ones don't hold (rows, omitted)."""
-    held = model_matrix(levels, matrix.estimated) @ matrix.weights
-    return model_matrix(levels, matrix.omitted) - held

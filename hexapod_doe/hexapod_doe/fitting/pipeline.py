@@ -115,8 +115,8 @@ def _initial(state: Pipeline) -> None:
         if len(terms) < len(found):
             state.caveats.append(
                 'The interactions are confounded with each other in part, and the cases are too '
-                'few to tell them apart: the models leave them out. Intervals of the estimands '
-                'allow for them, those of other statements hold only if they are nil.'
+                'few to tell them apart: the models leave them out. Intervals of what is stated '
+                'before elimination allow for them as for random effects.'
             )
         description = f'all {len(terms)} terms that the cases can estimate'
         if options.max_order:

@@ -10,6 +10,7 @@ import numpy as np
 from hexapod_doe.analysis.results import MainEffect, Removal, Step
 from hexapod_doe.designs.terms import CONSTANT
 from hexapod_doe.fitting.alias_matrix import partial_aliases, with_partial_aliases
+from hexapod_doe.fitting.anova import anova, vif
 from hexapod_doe.fitting.elimination import Dropped
 from hexapod_doe.fitting.model import alias_strings, estimable_terms
 from hexapod_doe.fitting.pipeline import FittedStep
@@ -45,6 +46,8 @@ def step_record(step: FittedStep, aliases: Mapping[str, str]) -> Step:
         df_error=fit.df_error,
         sse=fit.sse,
         sst=fit.sst,
+        vif=vif(fit),
+        anova=anova(fit),
         lack_of_fit=fit.lack_of_fit,
         blocks=fit.blocks,
         rows=tuple(map(int, step.rows)),

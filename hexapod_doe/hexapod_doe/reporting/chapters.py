@@ -135,6 +135,7 @@ CHAPTERS = (
             _of_last(residuals.normal_probability),
             _of_last(residuals.against_fit),
             _of_last(residuals.against_order),
+            models.anova,
             models.checks,
             models.transform,
             models.elimination,
@@ -144,6 +145,6 @@ CHAPTERS = (
         'design',
         'What the design cannot separate',
         'Terms that are always switched together are seen only as a sum.',
-        (tables.aliases,),
+        (tables.aliases, tables.alias_matrix),
     ),
 )

@@ -50,7 +50,8 @@ def model_terms(analysis: Analysis) -> Table:
         'model_terms',
         'Terms of the final model',
         'An effect is the mean response with the term at +1 minus that at −1, twice the '
-        f'coefficient. A sum is all that the cases can see of its terms{scale}.',
+        'coefficient. A sum is all that the cases can see of its terms. VIF: by how much other '
+        f'terms swell the variance of the estimate{scale}.',
         {
             'term': ['constant' if name == CONSTANT else short_alias(name, 8) for name in names],
             'effect': aligned(columns['effects'], 4, sign=True),
@@ -58,8 +59,38 @@ def model_terms(analysis: Analysis) -> Table:
             'standard error': [number(value) for value in columns['se']],
             't': aligned(columns['t'], 4, sign=True),
             'p': [probability(value) for value in columns['p']],
+            'VIF': [number(step.vif.get(term)) for term in step.terms],
         },
-        pd.DataFrame({'term': step.terms, 'alias': names, **columns}),
+        pd.DataFrame(
+            {
+                'term': step.terms,
+                'alias': names,
+                **columns,
+                'vif': [step.vif.get(term) for term in step.terms],
+            }
+        ),
+    )
+
+
+def anova(analysis: Analysis) -> Table | None:
+    """Tabulate the analysis of variance of the final model."""
+    found = analysis.final.anova
+    if not found:
+        return None
+    return Table(
+        'anova',
+        'Analysis of variance of the final model',
+        'Adjusted sums of squares: what the error grows by without the source, all others kept. '
+        'F against the error; of the lack of fit against the pure error, the spread within cases.',
+        {
+            'source': [row.source for row in found],
+            'df': [f'{row.df}' for row in found],
+            'Adj SS': [number(row.ss) for row in found],
+            'Adj MS': [number(row.ms) for row in found],
+            'F': [number(row.f) for row in found],
+            'p': [probability(row.p) for row in found],
+        },
+        pd.DataFrame([vars(row) for row in found]),
     )
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pandas as pd
 
 from hexapod_doe.analysis.results import Analysis, Prediction
-from hexapod_doe.fitting.alias_matrix import short_alias
+from hexapod_doe.fitting.alias_matrix import short_alias, with_partial_aliases
 from hexapod_doe.reporting.formats import MISSING, aligned, chance, interval
 from hexapod_doe.reporting.standing import Standing, standings
 from hexapod_doe.sheets.write import write_csv
@@ -92,6 +92,32 @@ def aliases(analysis: Analysis) -> Table | None:
             ],
         },
         pd.DataFrame({'term': mixed.keys(), 'alias': mixed.values()}),
+    )
+
+
+def alias_matrix(analysis: Analysis) -> Table | None:
+    """Tabulate what each term of the model holds of others in part."""
+    partial = {} if analysis.attribution is None else analysis.attribution.partial
+    if not partial:
+        return None
+    rows = [
+        (term, other, weight)
+        for term, others in partial.items()
+        for other, weight in others.items()
+    ]
+    return Table(
+        'alias_matrix',
+        'What the terms hold of others',
+        'The columns of this design are correlated in part: each coefficient is its own effect '
+        'plus these shares of effects that the model leaves out. The CSV has the whole matrix.',
+        {
+            'term': list(partial),
+            'holds': [
+                short_alias(with_partial_aliases(term, others), MAX_NAMES)
+                for term, others in partial.items()
+            ],
+        },
+        pd.DataFrame(rows, columns=['term', 'omitted', 'weight']),
     )
 
 

@@ -15,7 +15,7 @@ from scipy import special, stats
 
 from hexapod_doe.designs.design import Design
 from hexapod_doe.fitting.model import model_matrix
-from hexapod_doe.tables.table import RESPONSE, RunTable, build_rows
+from hexapod_doe.tables.table import BLOCK, RESPONSE, RunTable, build_rows
 
 _GRID = 4001
 
@@ -36,6 +36,10 @@ class Truth:
     )
     """Coefficients of the log-odds of failure: 20 % on average."""
     sigma: float = 40.0
+    log_spread: Mapping[str, float] = field(default_factory=dict)
+    """Coefficients of the logarithm of a successful run's deviation over sigma."""
+    block_sigma: float = 0.0
+    """Deviation of what the runs of a block share."""
     failed_mean: float = -40.0
     failed_sigma: float = 70.0
 
@@ -47,6 +51,12 @@ class Truth:
         """Return the mean reward of a successful run (n,)."""
         return _linear(levels, self.success)
 
+    def deviation(self, levels: pd.DataFrame) -> np.ndarray:
+        """Return the deviation of a successful run (n,)."""
+        if not self.log_spread:
+            return np.full(len(levels), self.sigma)
+        return self.sigma * np.exp(_linear(levels, self.log_spread))
+
     def mean(self, levels: pd.DataFrame) -> np.ndarray:
         """Return the mean reward of a run (n,)."""
         pi = self.p_failure(levels)
@@ -55,11 +65,12 @@ class Truth:
     def quantiles(self, levels: pd.DataFrame, probability: np.ndarray) -> np.ndarray:
         """Return quantiles of a run's reward (n, len(probability)), by inverting its mixture."""
         result = []
-        for pi, mu in zip(self.p_failure(levels), self.reward_success(levels), strict=True):
-            low = self.failed_mean - 6 * self.failed_sigma
-            grid = np.linspace(low, mu + 6 * self.sigma, _GRID)
+        parts = (self.p_failure(levels), self.reward_success(levels), self.deviation(levels))
+        for pi, mu, sigma in zip(*parts, strict=True):
+            low = min(self.failed_mean - 6 * self.failed_sigma, mu - 6 * sigma)
+            grid = np.linspace(low, mu + 6 * sigma, _GRID)
             below = pi * stats.norm.cdf(grid, self.failed_mean, self.failed_sigma)
-            below += (1 - pi) * stats.norm.cdf(grid, mu, self.sigma)
+            below += (1 - pi) * stats.norm.cdf(grid, mu, sigma)
             result.append(np.interp(probability, below, grid))
         return np.array(result)
 
@@ -81,9 +92,9 @@ class Truth:
         return (self.quantiles(levels, u) * weight).mean(axis=1) / kept
 
     def simulate(self, levels: pd.DataFrame, rng: np.random.Generator) -> np.ndarray:
-        """Return the reward of one run of each row (n,)."""
+        """Return the reward of one run of each row (n,), without what blocks share."""
         failed = rng.random(len(levels)) < self.p_failure(levels)
-        success = rng.normal(self.reward_success(levels), self.sigma)
+        success = rng.normal(self.reward_success(levels), self.deviation(levels))
         return np.where(
             failed, rng.normal(self.failed_mean, self.failed_sigma, len(levels)), success
         )
@@ -95,11 +106,17 @@ def repeated_levels(design: Design, replicates: int) -> pd.DataFrame:
     return pd.DataFrame(levels, columns=list(design.factors))
 
 
-def table_of(levels: pd.DataFrame, response: np.ndarray) -> RunTable:
-    """Return the table of simulated runs."""
+def table_of(
+    levels: pd.DataFrame, response: np.ndarray, blocks: np.ndarray | None = None
+) -> RunTable:
+    """Return the table of simulated runs, in blocks if their labels are given (n,)."""
     factors = tuple(map(str, levels.columns))
-    rows, caveats = build_rows(levels.assign(**{RESPONSE: response}), factors)
-    return RunTable('simulated', 'simulated', 'reward', factors, rows, caveats)
+    raw = levels.assign(**{RESPONSE: response}, **({} if blocks is None else {BLOCK: blocks}))
+    rows, caveats = build_rows(raw, factors)
+    column = '' if blocks is None else BLOCK
+    return RunTable(
+        'simulated', 'simulated', 'reward', factors, rows, caveats, block_column=column
+    )
 
 
 def _linear(levels: pd.DataFrame, coef: Mapping[str, float]) -> np.ndarray:

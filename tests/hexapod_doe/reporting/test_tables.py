@@ -4,14 +4,21 @@
 """Tables hold the numbers of the analysis, in full in their files and rounded on the page."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import pandas as pd
 import pytest
+from hexapod_doe.analysis.analysis import analyse
+from hexapod_doe.analysis.options import Options
 from hexapod_doe.reporting import findings, models, tables
 from hexapod_doe.reporting.tables import Table
+from hexapod_doe.tables.csv_table import read_csv
+
+CASES = Path(__file__).parents[2] / 'data' / 'cases'
 
 MAKERS = [
     tables.predictions, models.steps, models.model_terms, models.elimination, tables.aliases,
+    models.anova,
     tables.main_effects, tables.runs, models.checks, models.transform, findings.choices,
     findings.attribution, findings.failure_model, findings.two_part, findings.averaging,
     findings.confirmation, findings.devices, findings.front, findings.breakage,
@@ -79,3 +86,13 @@ def test_confirmation_runs_are_judged(campaign):
     assert table.cells['verdict'][0] == 'confirmed'
     assert table.cells['verdict'][1] == 'not run'
     assert findings.confirmation(campaign).title == 'What would confirm them'
+
+
+def test_what_an_irregular_design_mixes_is_tabulated(campaign):
+    assert tables.alias_matrix(campaign) is None
+    (table,) = read_csv(CASES / 's11_plackett_burman_12.csv', 'y')
+    made = tables.alias_matrix(analyse([table], Options()))
+    assert made.cells['holds'][0] == (
+        'A - 0.33·BC - 0.33·BD - 0.33·BE + 0.33·BF - 0.33·BG - 0.33·BH + 0.33·BJ + 38 more'
+    )
+    assert len(made.data) == 11 * 45
