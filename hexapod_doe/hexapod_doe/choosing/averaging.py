@@ -19,7 +19,7 @@ from scipy import linalg
 from hexapod_doe.analysis.findings import Averaging, Estimate
 from hexapod_doe.choosing.draws import interval_of
 from hexapod_doe.choosing.prediction import rank_descending
-from hexapod_doe.designs.terms import CONSTANT, order, terms_up_to
+from hexapod_doe.designs.terms import CONSTANT, terms_up_to
 from hexapod_doe.fitting.blocks import no_blocks, without_blocks
 from hexapod_doe.fitting.model import (
     centre_points,
@@ -68,9 +68,11 @@ class ModelSpace:
         self._scores: dict[bytes, float] = {}
 
     @cached_property
-    def _parents(self) -> list[list[int]]:
+    def _parents(self) -> np.ndarray:
+        """Indices of the two parents of each interaction (interactions, 2)."""
         index = {term: i for i, term in enumerate(self.terms)}
-        return [[index[parent] for parent in parents(term)] for term in self.terms]
+        pairs = [[index[parent] for parent in parents(term)] for term in self.terms]
+        return np.array([pair for pair in pairs if pair], dtype=int).reshape(-1, 2)
 
     def score(self, active: np.ndarray) -> float:
         """Return the log posterior of a model up to a constant."""
@@ -106,13 +108,10 @@ class ModelSpace:
         return max(self._total - float(projected @ projected), 0.0)
 
     def _log_prior(self, active: np.ndarray) -> float:
-        total = 0.0
-        for i, term in enumerate(self.terms):
-            chance = P_MAIN
-            if order(term) == 2:
-                chance = P_INTERACTION[int(active[self._parents[i]].sum())]
-            total += np.log(chance if active[i] else 1 - chance)
-        return total
+        chance = np.full(len(active), P_MAIN)
+        mains = len(self.factors)  # the terms are sorted by order
+        chance[mains:] = np.array(P_INTERACTION)[active[self._parents].sum(axis=1)]
+        return float(np.log(np.where(active, chance, 1 - chance)).sum())
 
     def solve(self, active: np.ndarray) -> tuple[np.ndarray, float, np.ndarray]:
         """Return coefficients, error sum of squares and R⁻¹ of a model with the constant.
@@ -127,7 +126,7 @@ class ModelSpace:
             raise linalg.LinAlgError('dependent columns')
         projected = q.T @ self.rotated
         rest = self.rotated - q @ projected
-        inverse = linalg.solve_triangular(r, np.eye(len(r)))
+        inverse = np.linalg.inv(r)
         return inverse @ projected, self.outside + float(rest @ rest), inverse
 
 

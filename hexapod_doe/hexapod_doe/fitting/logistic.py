@@ -83,7 +83,7 @@ class _State:
             return cls(coef, r, np.full_like(coef, np.inf), np.inf, -np.inf)
         leverage = (q**2).sum(axis=1)
         score = matrix.T @ (outcome - probability + leverage * (0.5 - probability))
-        inverse = linalg.solve_triangular(r, np.eye(len(r)))
+        inverse = np.linalg.inv(r)
         half = inverse.T @ score
         penalised = outcome @ eta - np.logaddexp(0, eta).sum() + np.log(diagonal).sum()
         return cls(coef, inverse, inverse @ half, float(half @ half), float(penalised))

@@ -103,3 +103,9 @@ def test_averaging_keeps_curvature() -> None:
     assert low is not None
     assert high is not None
     assert low < 91 < high < 94  # 91 is the truth of the simulated runs; centre points reach 130
+
+
+def test_curvature_is_told() -> None:
+    told = [text for text in analysis_of('F9_averaging_curvature').caveats if 'curvature' in text]
+    assert len(told) == 1
+    assert 'centre points lie 29.8 above' in told[0]

@@ -174,9 +174,14 @@ def _bars_overlap(first: MainEffect, second: MainEffect) -> bool:
 
 
 def _interaction_terms(analysis: Analysis) -> list[str]:
-    """Return two-factor terms of the final model, else the largest of the first one."""
+    """Return two-factor terms of the final model, else the largest of the first one.
+
+    A term that only a transformed model holds has no means in the units of the response.
+    """
     final, first = analysis.final, analysis.steps[0]
-    pool = [term for term in final.terms if order(term) == 2 and is_interaction(term)]
+    plain = {term for step in analysis.steps if step.scale == 'response' for term in step.terms}
+    pool = [term for term in final.terms if order(term) == 2 and term in plain]
+    pool = [term for term in pool if is_interaction(term)]
     sizes = final.effects if pool else first.effects
     pool = pool or [term for term in first.terms if order(term) == 2 and is_interaction(term)]
     limit = MAX_INTERACTIONS if sizes is final.effects else 3
