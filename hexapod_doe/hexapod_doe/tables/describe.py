@@ -84,9 +84,9 @@ def model_caveats(analysis: Analysis) -> list[str]:
     if bend is not None and bend.p is not None and bend.p < alpha:
         side = 'below' if bend.difference > 0 else 'above'
         caveats.append(
-            f'The centre points lie {abs(bend.difference):.3g} {side} what the other runs foretell '
-            f'for them (curvature p = {bend.p:.2g}): between the levels of the numeric factors the '
-            'response bends, and the best setting may lie there.'
+            f'The centre points lie {abs(bend.difference):.3g} {side} what the other runs '
+            f'foretell for them (curvature p = {bend.p:.2g}): between the levels of the numeric '
+            'factors the response bends, and the best setting may lie there.'
         )
     transform = analysis.transform
     if transform is not None and transform.lambda_ci is not None:
