@@ -10,6 +10,7 @@ import tempfile
 from collections.abc import Callable, Iterator
 
 import pytest
+from hexapod_node.participants import participants_here
 from hypothesis import settings
 
 # The port says which domain is taken, to every test process of this machine: the same one that
@@ -33,12 +34,15 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def _reserve_domain() -> tuple[int, socket.socket]:
-    """Return a ROS domain that no other test process has, and the socket that holds it."""
+    """Return a ROS domain that no test process has and no node is in, and what holds it."""
     for domain in range(1, _LAST_DOMAIN + 1):
         holder = socket.socket()
         try:
             holder.bind(('127.0.0.1', _PORT_BASE + domain))
         except OSError:
+            holder.close()
+            continue
+        if participants_here(domain):  # nodes of somebody else, or those that a killed test left
             holder.close()
             continue
         return domain, holder

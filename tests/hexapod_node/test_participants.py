@@ -31,14 +31,13 @@ os._exit(0)
 """
 
 
-def test_the_ports_of_a_domain_are_counted(tmp_path: Path, monkeypatch) -> None:
-    monkeypatch.setenv('ROS_DOMAIN_ID', '2')
+def test_the_ports_of_a_domain_are_counted(tmp_path: Path) -> None:
     first = 7400 + 250 * 2 + 10
     ports = [first, first + 2, first + 2, first + 238, first + 1, first + 240, first - 10, 53]
     rows = [ROW.format(n=n, port=port) for n, port in enumerate(ports)]
     (tmp_path / 'udp').write_text(HEAD + ''.join(rows))
-    assert participants_here(tmp_path / 'udp') == 3
-    assert participants_here(tmp_path / 'nowhere') == 0
+    assert participants_here(2, tmp_path / 'udp') == 3
+    assert participants_here(2, tmp_path / 'nowhere') == 0
 
 
 @pytest.mark.parametrize(('others', 'scope', 'lines'), [

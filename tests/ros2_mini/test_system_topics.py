@@ -5,6 +5,7 @@
 
 import pytest
 import rclpy
+from hexapod_node.environment import domain_id
 from hexapod_node.participants import participants_here
 from ros2_mini.node_context import open_node
 
@@ -27,10 +28,10 @@ def test_node_list_sees_every_one_of_several_participants(output):
 
 
 def test_participants_of_this_host_are_counted():
-    before = participants_here()
+    before = participants_here(domain_id())
     assert before >= 1  # the sample
     with open_node():
-        assert participants_here() == before + 1
+        assert participants_here(domain_id()) == before + 1
 
 
 def test_echo(output, error):

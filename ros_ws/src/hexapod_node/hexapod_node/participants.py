@@ -20,13 +20,13 @@ REACHED = 32
 _PORTS = Path('/proc/net/udp')
 
 
-def participants_here(table: Path = _PORTS) -> int:
-    """Return how many participants of this process's domain run on this host.
+def participants_here(domain: int, table: Path = _PORTS) -> int:
+    """Return how many participants of a domain run on this host.
 
     Each holds the UDP port 7400 + 250 domain + 10 + 2 i for some i below 120 (RTPS 2.2, section
     9.6.1.1). The answer is 0 where the system does not list its ports.
     """
-    first = 7400 + 250 * domain_id() + 10
+    first = 7400 + 250 * domain + 10
     ports = set(range(first, first + 240, 2))
     if not table.exists():
         return 0

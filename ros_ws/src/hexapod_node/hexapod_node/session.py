@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import rclpy
 
-from hexapod_node.environment import require_log_directory
+from hexapod_node.environment import domain_id, require_log_directory
 from hexapod_node.lifeline import follow_launch
 from hexapod_node.participants import participants_here, warn_if_late
 
@@ -18,5 +18,5 @@ def begin(args: Sequence[str] | None = None) -> None:
     """Initialise rclpy with ROS arguments, those of the command line when None."""
     follow_launch()
     require_log_directory()
-    warn_if_late(participants_here())
+    warn_if_late(participants_here(domain_id()))
     rclpy.init(args=list(args) if args is not None else None)

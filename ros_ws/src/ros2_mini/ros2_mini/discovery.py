@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable
 from typing import TypeVar
 
+from hexapod_node.environment import domain_id
 from hexapod_node.participants import participants_here
 from rclpy.node import Node
 
@@ -68,7 +69,7 @@ def wait_until_settled(node: Node, limit: float) -> None:
     while (now := time.monotonic()) < start + limit:
         if (graph := _snapshot(node)) != last:
             last, changed = graph, now
-        expected = participants_here()
+        expected = participants_here(domain_id())
         complete = _discovered(node) >= expected if expected else now > start + _LEAST
         if complete and now > changed + _QUIET:
             return
