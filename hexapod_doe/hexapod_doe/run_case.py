@@ -99,7 +99,13 @@ def parser() -> CommandLine:
     made.add_argument('--plan', type=file, required=True, help='plan.csv of the campaign')
     made.add_argument('--row', type=whole(ge=1), required=True, help='StdOrder of the row')
     made.add_argument('--out', type=folder, help="the campaign's folder; default that of the plan")
-    made.add_argument('--config', type=file, help='changes to article.yaml')
+    made.add_argument(
+        '--config',
+        '--hyperparameters',  # its name before the sensors were in it
+        type=file,
+        metavar='FILE',
+        help='YAML file of changes to article.yaml',
+    )
     made.add_argument('--episodes', type=whole(ge=1), default=1000, help='default %(default)s')
     made.add_argument(
         '--record-every',
