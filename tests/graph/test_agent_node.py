@@ -42,7 +42,7 @@ def swift(tmp_path) -> str:
     """Return swift.yaml with short episodes and small batches."""
     changes = yaml.safe_load((files('hexapod_agent') / 'swift.yaml').read_text())
     changes['task'] = {'time_limit_steps': 60}
-    changes['ddpg'] |= {'batch_size': 32, 'update_every': 8}
+    changes['learner']['ddpg'] |= {'batch_size': 32, 'update_every': 8}
     changes['training']['episodes'] = 3
     path = tmp_path / 'swift.yaml'
     path.write_text(yaml.safe_dump(changes))

@@ -114,7 +114,7 @@ def test_a_fleet_gives_the_results_of_the_graph(on_graph, in_fleet, row) -> None
     assert theirs['updates'].iloc[-1] == 20
     pd.testing.assert_frame_equal(ours, theirs, check_exact=True)
     kept, expected = (read_run(row(name).bag).metadata for name in ('fleet', 'graph'))
-    for key in ('run_id', 'observations', 'seed', 'mode', 'episodes', 'config', 'case', 'status'):
+    for key in ('run_id', 'observations', 'seed', 'mode', 'episodes', 'spec', 'case', 'status'):
         assert kept[key] == expected[key]
 
 
