@@ -46,8 +46,9 @@ def test_without_a_display_there_is_one_clear_error(monkeypatch) -> None:
 
 
 def test_the_window_is_shown_in_real_time(window: Window) -> None:
-    viewer = Viewer(Simulation())
+    simulation = Simulation()
     begin = time.monotonic()
+    viewer = Viewer(simulation)
     for _ in range(8):
         viewer.show()
     assert time.monotonic() - begin >= 8 * 0.025 - 1e-3
