@@ -28,7 +28,8 @@ RESULTS = 30
 @pytest.fixture
 def recorder(tmp_path):
     """A recorder process with an open run, to which RESULTS results were published."""
-    process = subprocess.Popen([sys.executable, '-m', 'hexapod_doe.recorder_node'])
+    command = [sys.executable, '-m', 'hexapod_doe.recorder_node', '--ros-args']
+    process = subprocess.Popen([*command, '-p', f'root:={tmp_path}'])
     rclpy.init()
     node = rclpy.create_node('agent')
     executor = SingleThreadedExecutor()
