@@ -27,6 +27,7 @@ from hexapod_doe.tables.caveats import (
     disagreement_caveat,
     dispersion_caveat,
     failure_caveats,
+    few_runs_caveat,
     unseen_caveat,
 )
 from hexapod_doe.tables.describe import design_caveats, model_caveats, summarise
@@ -90,7 +91,8 @@ def _analyse(
 
 def _failure_caveats(table: RunTable, options: Options, failures: Failures | None) -> list[str]:
     if failures is not None:
-        return failure_caveats(failures.record, options.alpha)
+        runs = int(table.rows.groupby('case').size().max())
+        return [*failure_caveats(failures.record, options.alpha), *few_runs_caveat(runs)]
     threshold = options.failure_threshold
     if options.estimand != 'mean':
         return []

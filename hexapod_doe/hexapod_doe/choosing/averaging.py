@@ -137,6 +137,7 @@ def average(
     level: float,
     rng: np.random.Generator,
     blocks: np.ndarray | None = None,
+    decide: Callable[[np.ndarray], np.ndarray] | None = None,
 ) -> Averaging:
     """Average the values of all combinations over the models.
 
@@ -147,6 +148,7 @@ def average(
         level: Confidence of the intervals.
         rng: For the sampler.
         blocks: Basis of the differences between blocks (n, b), which every model has.
+        decide: As `spread`, for the order of the combinations; None for the same.
     """
     space = ModelSpace(levels, response, blocks)
     grid = corners(list(levels.columns))
@@ -160,7 +162,9 @@ def average(
             visited[active.tobytes()] += 1
             draws.append(_draw(space, active, points, rng))
     eta = np.array(draws) + _block_error(levels, response, blocks, len(draws), rng)
-    return _summarise(space, visited, spread(eta), labels(grid), level)
+    values = spread(eta)
+    ordered = (values if decide is None else decide(eta)).mean(axis=0)
+    return _summarise(space, visited, values, ordered, labels(grid), level)
 
 
 def _absorbed(levels: pd.DataFrame, blocks: np.ndarray) -> np.ndarray:
@@ -231,6 +235,7 @@ def _summarise(
     space: ModelSpace,
     visited: Mapping[bytes, int],
     draws: np.ndarray,
+    ordered: np.ndarray,
     names: Sequence[str],
     level: float,
 ) -> Averaging:
@@ -241,7 +246,7 @@ def _summarise(
     p_active = np.sum([shares[key] * models[key] for key in visited], axis=0)
     fits = draws.mean(axis=0)
     low, high = interval_of(draws, level)
-    ranking = [names[i] for i in np.argsort(rank_descending(fits))]
+    ranking = [names[i] for i in np.argsort(rank_descending(ordered))]
     return Averaging(
         models=len(visited),
         weights=tuple(

@@ -50,7 +50,13 @@ def conclude(
         rank_uncertainty=rank_uncertainty(outlook, options.level),
         attribution=attribute(table.levels, outlook.terms, outlook.coef, outlook.value, rng),
         averaging=average(
-            outlook.levels, outlook.response, outlook.spread, options.level, rng, outlook.blocks
+            outlook.levels,
+            outlook.response,
+            outlook.spread,
+            options.level,
+            rng,
+            outlook.blocks,
+            outlook.decide,
         ),
         purchase=_purchase(table, outlook, options),
         against_all=_against_all(outlook, options.level),

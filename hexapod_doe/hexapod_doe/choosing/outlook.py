@@ -66,7 +66,9 @@ class Outlook:
     blocks: np.ndarray
     """Basis of the differences between their blocks (n, b)."""
     spread: Callable[[np.ndarray], np.ndarray]
-    """Draws of the values from draws of the linear predictor (draws, 2^k)."""
+    """Draws of the values from draws of the linear predictor (draws, 2^k), for intervals."""
+    decide: Callable[[np.ndarray], np.ndarray]
+    """The same by the selected model, for the order of the combinations."""
     dispersion: Dispersion | None
     """Whether the spread of the runs differs by factor; None with too few to tell."""
 
@@ -106,6 +108,7 @@ def final_outlook(state: Pipeline, rng: np.random.Generator) -> Outlook:
         response=state.steps[-1].response,
         blocks=state.blocks,
         spread=lambda eta: back_draws(eta, transform),
+        decide=lambda eta: back_draws(eta, transform),
         dispersion=found,
     )
 
@@ -171,5 +174,6 @@ def two_part_outlook(selected: Parts, unselected: Parts, rng: np.random.Generato
         response=selected.response,
         blocks=selected.blocks,
         spread=lambda eta: unselected.draw(len(eta), rng).mixed_with(eta),
+        decide=lambda eta: selected.draw(len(eta), rng).mixed_with(eta),
         dispersion=unselected.dispersion,
     )

@@ -41,9 +41,13 @@ class _Variance:
 
 
 def estimates(table: RunTable, level: float) -> tuple[EstimandResult, ...]:
-    """Return a result for each of the stated estimands that every case has enough runs for."""
+    """Return a result for each of the stated estimands that every case has enough runs for.
+
+    In blocks only the mean is stated: what a few blocks share moves ordered runs in ways that no
+    variance between their means tells.
+    """
     fewest = int(table.rows.groupby('case').size().min())
-    known = (estimand(name) for name in STATED)
+    known = (estimand(name) for name in (STATED[:1] if table.block_column else STATED))
     return tuple(
         estimate(table, item, level) for item in known if fewest >= max(2, item.least_runs)
     )

@@ -126,3 +126,10 @@ def test_few_failures_leave_main_effects() -> None:
     assert parts.failure_terms == ('1', *'ABCDEFG')
     analysis = analyse([table], Options(failure_threshold=130.0))
     assert any('holds main effects only' in caveat for caveat in analysis.caveats)
+
+
+def test_two_runs_of_a_case_are_said_to_be_few() -> None:
+    for replicates, told in ((2, True), (10, False)):
+        analysis = analyse([failing_campaign(replicates)], Options(failure_threshold=130.0))
+        assert analysis.two_part is not None
+        assert any('are too sure' in text for text in analysis.caveats) is told
