@@ -4,6 +4,7 @@
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 from hexapod_doe.fitting.model import estimable_terms
 from hexapod_doe.fitting.regression import ols
@@ -24,7 +25,7 @@ def test_main_effects_are_fitted_means_where_cases_have_unequal_runs() -> None:
     assert found['A'].mean_with - found['A'].mean_without == pytest.approx(14.5, abs=0.1)
     assert found['A'].effect == pytest.approx(2 * reference.params['A'])
     assert found['A'].se_effect == pytest.approx(2 * reference.bse['A'])
-    means = reference.predict({'A': [1, 1], 'B': [-1, 1]})
+    means = reference.predict(pd.DataFrame({'A': [1, 1], 'B': [-1, 1]}))
     assert found['A'].fitted_with == pytest.approx(means.mean())
     covariance = np.asarray(reference.cov_params())
     point = np.array([1, 1, 0, 0])  # 1, A, B, AB: B averaged out
