@@ -144,3 +144,22 @@ def test_a_signal_while_libraries_are_loaded_ends_a_node_with_status_0(
     )
     assert ended.returncode == 0, ended.stderr
     assert 'Traceback' not in ended.stderr
+
+
+IN_A_FINALISER = """
+import os, signal, time
+from hexapod_node import signals
+class Dying:
+    def __del__(self):
+        os.kill(os.getpid(), signal.SIGTERM)
+signals.end_at_once()
+Dying()
+time.sleep(30.0)
+"""
+
+
+def test_a_signal_within_a_finaliser_is_not_lost_while_libraries_are_loaded() -> None:
+    ended = subprocess.run(
+        [sys.executable, '-c', IN_A_FINALISER], capture_output=True, timeout=20, check=False
+    )
+    assert (ended.returncode, ended.stderr) == (0, b'')

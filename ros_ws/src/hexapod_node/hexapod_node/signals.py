@@ -10,6 +10,7 @@ the end of the process, as the first one would any callback.
 
 from __future__ import annotations
 
+import os
 import signal
 from types import FrameType
 from typing import Any
@@ -63,5 +64,6 @@ def _note(_number: int, _frame: FrameType | None) -> None:
 
 
 def _end(_number: int, _frame: FrameType | None) -> None:
-    ignore()
-    raise SystemExit(0)
+    # An exception would be lost where the signal arrives in a finaliser or a weak reference's
+    # callback, and imports are full of them.
+    os._exit(0)
