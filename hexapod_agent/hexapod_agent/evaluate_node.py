@@ -26,8 +26,8 @@ from hexapod_node.raw_topics import message_class
 from hexapod_node.root import root_arguments
 from hexapod_node.spin import serving, spin_once
 from hexapod_node.stamps import to_nanoseconds
+from hexapod_sim.nodes.sim_node import SimNode
 from hexapod_sim.sensor_table import CHANNELS
-from hexapod_sim.sim_node import SimNode
 from nav_msgs.msg import Odometry
 from rclpy.executors import Executor
 from rclpy.task import Future

@@ -21,7 +21,7 @@ from hexapod_node.node import Node
 from hexapod_node.root import root_arguments
 from hexapod_node.shared_memory import free_abandoned
 from hexapod_node.spin import run
-from hexapod_sim.sim_node import SimNode
+from hexapod_sim.nodes.sim_node import SimNode
 from rclpy.signals import uninstall_signal_handlers
 from rclpy.task import Future
 

@@ -5,5 +5,5 @@
 
 from hexapod_node.executable import executable
 
-sim_node = executable('hexapod_sim.sim_node')
-fake_driver_node = executable('hexapod_sim.fake_driver_node')
+sim_node = executable('hexapod_sim.nodes.sim_node')
+fake_driver_node = executable('hexapod_sim.nodes.fake_driver_node')

@@ -21,8 +21,8 @@ from hexapod_cpg.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import EpisodeResult
 from hexapod_node.subscriptions import subscribed_topics
+from hexapod_sim.nodes.sim_node import SimNode
 from hexapod_sim.sensor_table import LETTERS
-from hexapod_sim.sim_node import SimNode
 from sensor_msgs.msg import Imu, JointState
 
 pytestmark = pytest.mark.graph

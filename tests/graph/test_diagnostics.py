@@ -15,8 +15,8 @@ from hexapod_cpg.cpg_node import CpgNode
 from hexapod_doe.player_node import PlayerNode
 from hexapod_doe.recorder_node import RecorderNode
 from hexapod_node.stamps import to_nanoseconds
-from hexapod_sim.fake_driver_node import FakeDriverNode
-from hexapod_sim.sim_node import SimNode
+from hexapod_sim.nodes.fake_driver_node import FakeDriverNode
+from hexapod_sim.nodes.sim_node import SimNode
 from rclpy.parameter import Parameter
 
 pytestmark = pytest.mark.graph

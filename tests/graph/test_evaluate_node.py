@@ -10,7 +10,7 @@ from hexapod_agent.evaluate_node import EvaluationNode
 from hexapod_agent.evaluation import GraphError
 from hexapod_interfaces.action import TrainRun
 from hexapod_node.coroutines import start
-from hexapod_sim.sim_node import SimNode
+from hexapod_sim.nodes.sim_node import SimNode
 
 # A domain where no other test ever had an agent: rclpy leaves action servers behind.
 pytestmark = [pytest.mark.graph, pytest.mark.usefixtures('own_domain')]

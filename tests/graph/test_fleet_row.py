@@ -24,7 +24,7 @@ from hexapod_doe.campaigns.fleet_row import FleetRow
 from hexapod_doe.campaigns.messages import train_goal
 from hexapod_doe.recorder_node import RecorderNode
 from hexapod_doe.run_fleet import build_fleet
-from hexapod_sim.sim_node import SimNode
+from hexapod_sim.nodes.sim_node import SimNode
 
 pytestmark = pytest.mark.graph
 EPISODES = 5

@@ -26,8 +26,8 @@ from hexapod_interfaces.msg import CpgCommand
 from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.sample_gate import SampleGate
 from hexapod_node.stamps import time_message, to_nanoseconds
+from hexapod_sim.nodes.sim_node import SimNode
 from hexapod_sim.sensor_table import LETTERS
-from hexapod_sim.sim_node import SimNode
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from trajectory_msgs.msg import JointTrajectory

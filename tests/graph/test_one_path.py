@@ -18,8 +18,8 @@ from hexapod_agent.agent_node import AgentNode
 from hexapod_agent.training import Trainer
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
+from hexapod_sim.nodes.sim_node import SimNode
 from hexapod_sim.sensor_table import LETTERS
-from hexapod_sim.sim_node import SimNode
 from trajectory_msgs.msg import JointTrajectory
 
 pytestmark = pytest.mark.graph

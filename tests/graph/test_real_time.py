@@ -16,7 +16,7 @@ from hexapod_agent.training import Trainer
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_cpg.locomotion import Motion
 from hexapod_node.stamps import to_nanoseconds
-from hexapod_sim.sim_node import SimNode
+from hexapod_sim.nodes.sim_node import SimNode
 from lifecycle_msgs.msg import State, Transition
 from lifecycle_msgs.srv import ChangeState, GetState
 from nav_msgs.msg import Odometry

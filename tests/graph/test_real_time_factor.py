@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from hexapod_cpg.cpg_node import CpgNode
 from hexapod_node.stamps import to_nanoseconds
-from hexapod_sim.sim_node import SimNode
+from hexapod_sim.nodes.sim_node import SimNode
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
 

@@ -19,7 +19,7 @@ from hexapod_doe.bags.run_record import read_run, read_topic
 from hexapod_doe.bags.verify import verify
 from hexapod_doe.recorder_node import RecorderNode
 from hexapod_interfaces.action import TrainRun
-from hexapod_sim.sim_node import SimNode
+from hexapod_sim.nodes.sim_node import SimNode
 
 pytestmark = pytest.mark.graph
 EPISODES = 6

@@ -27,8 +27,8 @@ from hexapod_doe.shadow import main
 from hexapod_doe.shadow_node import ShadowNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_node.coroutines import start
+from hexapod_sim.nodes.sim_node import SimNode
 from hexapod_sim.sensor_table import LETTERS
-from hexapod_sim.sim_node import SimNode
 
 from hexapod_agent import checkpoint
 

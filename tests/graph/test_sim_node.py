@@ -15,7 +15,7 @@ from hexapod_cpg.messages import OutputMessages
 from hexapod_interfaces.msg import FootContacts, LineOffset, StepOutcome
 from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.stamps import time_message, to_nanoseconds
-from hexapod_sim.sim_node import SimNode
+from hexapod_sim.nodes.sim_node import SimNode
 from hexapod_sim.sums import ordered_sum
 from hexapod_sim.task import LineTask, TaskConfig, episode_seed
 from nav_msgs.msg import Odometry
@@ -134,7 +134,7 @@ def test_time_goes_on_over_resets_and_the_state_starts_afresh(rig: Rig) -> None:
 def test_nothing_is_read_for_topics_that_nobody_hears(rig: Rig, monkeypatch) -> None:
     read = []
     monkeypatch.setattr(
-        'hexapod_sim.publishers.read', lambda simulation, keys: read.append(set(keys)) or {}
+        'hexapod_sim.nodes.publishers.read', lambda simulation, keys: read.append(set(keys)) or {}
     )
     rig.listen('line_offset', LineOffset)
     rig.reset()

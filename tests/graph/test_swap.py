@@ -23,9 +23,9 @@ from hexapod_cpg.locomotion import Motion
 from hexapod_node.coroutines import start
 from hexapod_sim.driver_faults import DEVICES as ROWS
 from hexapod_sim.driver_faults import fault_names
-from hexapod_sim.fake_driver_node import FakeDriverNode
+from hexapod_sim.nodes.fake_driver_node import FakeDriverNode
+from hexapod_sim.nodes.sim_node import SimNode
 from hexapod_sim.sensor_table import LETTERS
-from hexapod_sim.sim_node import SimNode
 from nav_msgs.msg import Odometry
 from rclpy.parameter import Parameter
 from trajectory_msgs.msg import JointTrajectory

@@ -11,7 +11,7 @@ from hexapod_interfaces.msg import LineOffset
 from hexapod_sim.driver_faults import ALL_FAULTS, DEVICES, fault_names, faults
 from hexapod_sim.joint_layout import JointLayout
 from hexapod_sim.message_fields import read, write
-from hexapod_sim.messages import SENSOR_TOPICS
+from hexapod_sim.nodes.messages import SENSOR_TOPICS
 from hexapod_sim.robot import JOINTS, NEUTRAL_POSE, SUBSTEPS
 from hexapod_sim.simulation import Simulation
 from rclpy.serialization import deserialize_message, serialize_message

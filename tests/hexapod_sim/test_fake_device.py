@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from geometry_msgs.msg import WrenchStamped
 from hexapod_sim.fake_device import FakeDevice
-from hexapod_sim.fake_driver_node import PARAMETERS
+from hexapod_sim.nodes.fake_driver_node import PARAMETERS
 from hexapod_sim.robot import LEGS
 
 DEFAULTS = {entry.name: entry.default for entry in PARAMETERS}

@@ -65,7 +65,7 @@ def test_a_job_where_files_cannot_be_locked_names_the_folder(shell, campaign, mo
         'ros2 topic list',
         'ros2 run hexapod_cpg cpg_node',
         'ros2 launch hexapod_bringup description.launch.xml',
-        'python -m hexapod_sim.sim_node',
+        'python -m hexapod_sim.nodes.sim_node',
     ],
 )
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from geometry_msgs.msg import Quaternion, Vector3
 from hexapod_agent.contract.watch import MessageWatch
-from hexapod_sim.messages import SENSOR_TOPICS
+from hexapod_sim.nodes.messages import SENSOR_TOPICS
 from hexapod_sim.robot import GRAVITY, JOINTS
 from hexapod_sim.sensor_table import CHANNELS
 from hexapod_sim.sensors import read

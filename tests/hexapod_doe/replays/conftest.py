@@ -47,7 +47,7 @@ def play(
 def messages(task: LineTask, outcome: Outcome) -> dict[str, object]:
     """Return what the sim publishes of a sample."""
     from hexapod_interfaces.msg import LineOffset, StepOutcome
-    from hexapod_sim.messages import fill_odometry, new_odometry
+    from hexapod_sim.nodes.messages import fill_odometry, new_odometry
 
     odometry = new_odometry()
     fill_odometry(odometry, task.simulation)

@@ -31,9 +31,9 @@ from hexapod_doe.recorder_node import RecorderNode
 from hexapod_node.session import begin
 from hexapod_node.sync import LOCKSTEP, REALTIME
 from hexapod_sim.command_line import CommandLine, file
-from hexapod_sim.fake_driver_node import FakeDriverNode
+from hexapod_sim.nodes.fake_driver_node import FakeDriverNode
+from hexapod_sim.nodes.sim_node import SimNode
 from hexapod_sim.sensor_table import CHANNELS, LETTERS
-from hexapod_sim.sim_node import SimNode
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.action import get_action_server_names_and_types_by_node
 from rclpy.lifecycle import LifecycleNode

@@ -22,7 +22,7 @@ def make_worker() -> list[Node]:
     from hexapod_agent.agent_node import AgentNode
     from hexapod_cpg.cpg_node import CpgNode
     from hexapod_doe.recorder_node import RecorderNode
-    from hexapod_sim.sim_node import SimNode
+    from hexapod_sim.nodes.sim_node import SimNode
 
     return [SimNode(), CpgNode(), RecorderNode(), AgentNode()]
 

@@ -15,7 +15,7 @@ from hexapod_node.stamps import time_message
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 
-from hexapod_sim.messages import SENSOR_TOPICS, fill_odometry, new_odometry
+from hexapod_sim.nodes.messages import SENSOR_TOPICS, fill_odometry, new_odometry
 from hexapod_sim.robot import ODOM_FRAME
 from hexapod_sim.sensors import read
 from hexapod_sim.task import LineTask, Outcome

@@ -22,9 +22,9 @@ from hexapod_node.stamps import requested_start_ns, time_message, to_nanoseconds
 from hexapod_node.sync import REALTIME, SYNC, max_age, phase
 from trajectory_msgs.msg import JointTrajectory
 
-from hexapod_sim.messages import targets_from_message
-from hexapod_sim.publishers import SimPublishers
-from hexapod_sim.real_time import RealTime
+from hexapod_sim.nodes.messages import targets_from_message
+from hexapod_sim.nodes.publishers import SimPublishers
+from hexapod_sim.nodes.real_time import RealTime
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from hexapod_sim.task import LineTask, Outcome, TaskConfig
 from hexapod_sim.viewer import Viewer

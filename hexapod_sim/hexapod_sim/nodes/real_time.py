@@ -14,7 +14,7 @@ from hexapod_node.newest import Input, NewestSamples
 from hexapod_node.ticker import Tick, Ticker
 from trajectory_msgs.msg import JointTrajectory
 
-from hexapod_sim.messages import targets_from_message
+from hexapod_sim.nodes.messages import targets_from_message
 from hexapod_sim.plant import Plant
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from hexapod_sim.task import LineTask, Outcome, TaskConfig
