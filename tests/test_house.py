@@ -4,6 +4,8 @@
 """Who may import what: dependencies run one way, and ROS stays in the node files."""
 
 import ast
+from collections import defaultdict
+from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -115,3 +117,38 @@ def test_every_node_is_one_that_no_peer_can_end(file: Path) -> None:
                 assert 'from hexapod_node.node import Node\n' in text
             assert not {'ActionServer', 'ActionClient'} & set(bases)
     assert 'from rclpy.action import ActionClient' not in text
+
+
+# A room is a folder of a package, or a file at its root.
+WITHOUT_CIRCLES = [
+    ROOT / name / name for name in MAY_IMPORT if name not in ('hexapod_sim', 'hexapod_agent')
+] + [
+    ROOT / 'ros_ws' / 'src' / name / name
+    for name in ('hexapod_node', 'hexapod_bringup', 'ros2_mini')
+]
+
+
+@pytest.mark.parametrize('package', WITHOUT_CIRCLES, ids=lambda package: package.name)
+def test_no_circle_among_modules_nor_among_rooms(package: Path) -> None:
+    modules, rooms = defaultdict(set), defaultdict(set)
+    for file in sorted(package.rglob('*.py')):
+        here = file.relative_to(package.parent).with_suffix('').parts
+        for there in own_imports(file, package):
+            modules[here].add(there)
+            if there[1:2] != here[1:2]:
+                rooms[here[1:2]].add(there[1:2])
+    for graph in (modules, rooms):
+        TopologicalSorter(graph).prepare()  # raises CycleError, which names the circle
+
+
+def own_imports(file: Path, package: Path) -> set[tuple[str, ...]]:
+    """Return the modules of its own package that a file imports, for type checking included."""
+    found = set()
+    for node in ast.walk(ast.parse(file.read_text(encoding='utf-8'))):
+        if isinstance(node, ast.ImportFrom) and (node.module or '').startswith(package.name):
+            dotted = tuple(str(node.module).split('.'))
+            for alias in node.names:
+                module = (*dotted, alias.name)
+                is_module = package.parent.joinpath(*module).with_suffix('.py').is_file()
+                found.add(module if is_module else dotted)
+    return found - {(package.name,)}

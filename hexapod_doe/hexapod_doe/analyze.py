@@ -14,12 +14,12 @@ from hexapod_sim.command_line import one_line, options_of
 from hexapod_doe.analysis.analysis import analyse
 from hexapod_doe.analysis.analysis_json import write_json
 from hexapod_doe.analysis.analyze_arguments import build_parser
-from hexapod_doe.analysis.options import Options
-from hexapod_doe.analysis.results import Analysis
 from hexapod_doe.campaigns.campaign import PLAN_FILE
 from hexapod_doe.campaigns.next_steps import after_analysis
 from hexapod_doe.designs.plan_file import PlanError
 from hexapod_doe.errors import AnalysisError, BagError, TableError
+from hexapod_doe.records.options import Options
+from hexapod_doe.records.results import Analysis
 from hexapod_doe.reporting.report import write_report
 from hexapod_doe.stages import stage
 from hexapod_doe.tables.bag_response import DEFAULT_RESPONSE

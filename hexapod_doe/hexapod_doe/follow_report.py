@@ -11,8 +11,8 @@ from hexapod_sim.command_line import CommandLine, output_file, path
 from rich.console import Console
 from rich.table import Table
 
-from hexapod_doe.analysis.follow import BAND, CHECK_S, Response, read_track, responses
 from hexapod_doe.errors import BagError
+from hexapod_doe.replays.follow import BAND, CHECK_S, Response, read_track, responses
 from hexapod_doe.reporting.figures.follow import save_following
 
 

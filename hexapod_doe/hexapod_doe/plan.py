@@ -188,7 +188,7 @@ def leading_sets(campaign: Path) -> list[str]:
     """
     # What `plan` needs otherwise imports none of this.
     from hexapod_doe.analysis.analysis import analyse
-    from hexapod_doe.analysis.options import Options
+    from hexapod_doe.records.options import Options
     from hexapod_doe.tables.bag_table import plan_rule, read_bags
 
     tables = read_bags([campaign], read_plan(campaign / PLAN_FILE).factors)

@@ -8,8 +8,8 @@ from __future__ import annotations
 import pytest
 from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
-from hexapod_doe.analysis.follow import read_track, responses
 from hexapod_doe.bags.run_record import read_run
+from hexapod_doe.replays.follow import read_track, responses
 
 from hexapod_agent import checkpoint
 

@@ -8,21 +8,22 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from hexapod_doe.analysis.options import Options
-from hexapod_doe.analysis.results import Analysis
+from hexapod_doe.analysis.describe import design_caveats, model_caveats, summarise
 from hexapod_doe.choosing.attribution import alias_safe
 from hexapod_doe.choosing.choice import Failures, model_failures
 from hexapod_doe.choosing.conclusions import conclude
 from hexapod_doe.choosing.confirm import confirm
-from hexapod_doe.choosing.estimands import estimand, pseudo_values
+from hexapod_doe.choosing.estimate import estimates
 from hexapod_doe.choosing.failure import two_groups
 from hexapod_doe.choosing.outlook import final_outlook
 from hexapod_doe.choosing.prediction import predict_all
 from hexapod_doe.errors import TableError
 from hexapod_doe.fitting.curvature import curvature
-from hexapod_doe.fitting.estimate import estimates
-from hexapod_doe.fitting.pipeline import Pipeline, run
-from hexapod_doe.fitting.steps import aliases_of, main_effects, removals, step_record
+from hexapod_doe.fitting.estimands import estimand, pseudo_values
+from hexapod_doe.modelling.pipeline import Pipeline, run
+from hexapod_doe.modelling.steps import aliases_of, main_effects, removals, step_record
+from hexapod_doe.records.options import Options
+from hexapod_doe.records.results import Analysis
 from hexapod_doe.tables.caveats import (
     disagreement_caveat,
     dispersion_caveat,
@@ -30,7 +31,6 @@ from hexapod_doe.tables.caveats import (
     few_runs_caveat,
     unseen_caveat,
 )
-from hexapod_doe.tables.describe import design_caveats, model_caveats, summarise
 from hexapod_doe.tables.table import RESPONSE, RunTable
 
 

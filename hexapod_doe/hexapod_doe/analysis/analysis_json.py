@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from hexapod_doe.analysis.results import Analysis
+from hexapod_doe.records.results import Analysis
 
 SCHEMA = 'hexapod_doe/analysis/1'
 

@@ -7,7 +7,7 @@ import argparse
 
 from hexapod_sim.command_line import CommandLine, add_options, folder, path
 
-from hexapod_doe.analysis.options import Options
+from hexapod_doe.records.options import Options
 from hexapod_doe.tables.bag_response import DEFAULT_RESPONSE, RESPONSES
 
 DESCRIPTION = "Analyse a campaign's bags, or any table, and write a report and analysis.json."

@@ -15,11 +15,11 @@ from math import prod
 import numpy as np
 import pandas as pd
 
-from hexapod_doe.analysis.findings import Attribution
 from hexapod_doe.choosing.prediction import rank_descending
 from hexapod_doe.designs.terms import CONSTANT, CURVATURE, column, order, terms_up_to
 from hexapod_doe.fitting.alias_matrix import partial_aliases
 from hexapod_doe.fitting.model import centre_points, corners, labels, model_matrix
+from hexapod_doe.records.findings import Attribution
 
 MAX_EXAMINED = 4096
 """More namings than this are sampled."""

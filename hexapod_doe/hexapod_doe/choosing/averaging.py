@@ -16,7 +16,6 @@ import numpy as np
 import pandas as pd
 from scipy import linalg
 
-from hexapod_doe.analysis.findings import Averaging, Estimate
 from hexapod_doe.choosing.draws import interval_of
 from hexapod_doe.choosing.prediction import rank_descending
 from hexapod_doe.designs.terms import CONSTANT, terms_up_to
@@ -30,6 +29,7 @@ from hexapod_doe.fitting.model import (
     parents,
 )
 from hexapod_doe.fitting.regression import ols
+from hexapod_doe.records.findings import Averaging, Estimate
 
 P_MAIN = 0.5
 P_INTERACTION = (0.01, 0.10, 0.25)

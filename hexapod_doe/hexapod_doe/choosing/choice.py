@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hexapod_doe.analysis.findings import Estimate, TwoPart
-from hexapod_doe.analysis.options import Options
 from hexapod_doe.choosing.draws import draw_count, interval_of
 from hexapod_doe.choosing.failure import Threshold, failure_threshold
 from hexapod_doe.choosing.outlook import Outlook, two_part_outlook
 from hexapod_doe.choosing.two_part import Parts, fit_parts, select_parts
 from hexapod_doe.fitting.logistic import lack_of_fit
 from hexapod_doe.fitting.model import corners, labels, model_matrix
+from hexapod_doe.records.findings import Estimate, TwoPart
+from hexapod_doe.records.options import Options
 from hexapod_doe.tables.table import RunTable
 
 

@@ -7,14 +7,6 @@ from typing import TypedDict
 
 import numpy as np
 
-from hexapod_doe.analysis.findings import (
-    Attribution,
-    Averaging,
-    Estimate,
-    Purchase,
-    RankUncertainty,
-)
-from hexapod_doe.analysis.options import Options
 from hexapod_doe.choosing.attribution import attribute
 from hexapod_doe.choosing.averaging import average
 from hexapod_doe.choosing.devices import read_devices
@@ -22,6 +14,14 @@ from hexapod_doe.choosing.draws import interval_of
 from hexapod_doe.choosing.outlook import Outlook
 from hexapod_doe.choosing.purchase import purchase
 from hexapod_doe.choosing.ranks import rank_uncertainty
+from hexapod_doe.records.findings import (
+    Attribution,
+    Averaging,
+    Estimate,
+    Purchase,
+    RankUncertainty,
+)
+from hexapod_doe.records.options import Options
 from hexapod_doe.tables.table import RunTable
 
 

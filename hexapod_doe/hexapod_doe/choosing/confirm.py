@@ -11,11 +11,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from hexapod_doe.analysis.findings import Confirmation, ConfirmationCheck
 from hexapod_doe.choosing.draws import interval_of
 from hexapod_doe.choosing.outlook import Outlook, Stated
 from hexapod_doe.designs.plan_types import Confirmation as Rule
 from hexapod_doe.errors import AnalysisError
+from hexapod_doe.records.findings import Confirmation, ConfirmationCheck
 
 _TOP = 3
 

@@ -14,8 +14,8 @@ from typing import Any
 import yaml
 from hexapod_sim.sums import ordered_sum
 
-from hexapod_doe.analysis.findings import Device
 from hexapod_doe.errors import AnalysisError
+from hexapod_doe.records.findings import Device
 
 
 @dataclass(frozen=True)

@@ -28,9 +28,9 @@ from hexapod_doe.designs.terms import order
 from hexapod_doe.fitting.dispersion import Dispersion, dispersion, relative_deviation
 from hexapod_doe.fitting.left_out import left_out
 from hexapod_doe.fitting.model import corners, labels, model_matrix
-from hexapod_doe.fitting.pipeline import Pipeline
 from hexapod_doe.fitting.regression import Fit, ols
 from hexapod_doe.fitting.transform import Transform
+from hexapod_doe.modelling.pipeline import Pipeline
 
 
 @dataclass(frozen=True)

@@ -9,11 +9,11 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from hexapod_doe.analysis.results import Interval, Prediction
 from hexapod_doe.fitting.blocks import BlockTest
 from hexapod_doe.fitting.model import corners, labels, model_matrix
 from hexapod_doe.fitting.regression import Fit
 from hexapod_doe.fitting.transform import Transform
+from hexapod_doe.records.results import Interval, Prediction
 
 
 def half_widths(

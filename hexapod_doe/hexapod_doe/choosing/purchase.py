@@ -11,11 +11,11 @@ from collections.abc import Sequence
 import numpy as np
 from hexapod_sim.sums import ordered_sum
 
-from hexapod_doe.analysis.findings import Breakage, Device, PricedSet, Purchase
 from hexapod_doe.choosing.devices import DeviceTable
 from hexapod_doe.choosing.draws import interval_of
 from hexapod_doe.choosing.outlook import Outlook, Stated
 from hexapod_doe.fitting.model import EMPTY_SET
+from hexapod_doe.records.findings import Breakage, Device, PricedSet, Purchase
 
 
 def purchase(

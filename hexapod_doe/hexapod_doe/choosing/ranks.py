@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 from scipy import stats
 
-from hexapod_doe.analysis.findings import RankUncertainty
 from hexapod_doe.choosing.draws import equal_within
 from hexapod_doe.choosing.outlook import Outlook
+from hexapod_doe.records.findings import RankUncertainty
 
 
 def rank_uncertainty(outlook: Outlook, level: float) -> RankUncertainty | None:

@@ -9,7 +9,7 @@ A chapter names what makes its figures and tables; `report` makes them and write
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from hexapod_doe.analysis.results import Analysis, Step
+from hexapod_doe.records.results import Analysis, Step
 from hexapod_doe.reporting import findings, glossary, models, tables
 from hexapod_doe.reporting.figures import (
     effects,

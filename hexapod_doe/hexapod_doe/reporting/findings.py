@@ -7,8 +7,8 @@ import dataclasses
 
 import pandas as pd
 
-from hexapod_doe.analysis.results import Analysis
 from hexapod_doe.designs.terms import CONSTANT
+from hexapod_doe.records.results import Analysis
 from hexapod_doe.reporting.formats import (
     aligned,
     capitalised,

@@ -5,7 +5,7 @@
 
 import pandas as pd
 
-from hexapod_doe.analysis.results import Analysis
+from hexapod_doe.records.results import Analysis
 from hexapod_doe.reporting.tables import Table
 
 METRICS = {

@@ -5,9 +5,9 @@
 
 import pandas as pd
 
-from hexapod_doe.analysis.results import Analysis, Step
 from hexapod_doe.designs.terms import CONSTANT
 from hexapod_doe.fitting.alias_matrix import short_alias
+from hexapod_doe.records.results import Analysis, Step
 from hexapod_doe.reporting.formats import MISSING, aligned, interval, number, probability, signed
 from hexapod_doe.reporting.tables import Table
 

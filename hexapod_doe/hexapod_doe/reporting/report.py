@@ -13,7 +13,7 @@ from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
-from hexapod_doe.analysis.results import Analysis
+from hexapod_doe.records.results import Analysis
 from hexapod_doe.reporting import text
 from hexapod_doe.reporting.chapters import CHAPTERS
 from hexapod_doe.reporting.figures.chart import Chart

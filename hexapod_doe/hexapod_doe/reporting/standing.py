@@ -10,8 +10,8 @@ decides the order, its full form states the intervals.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from hexapod_doe.analysis.findings import TwoPart
-from hexapod_doe.analysis.results import Analysis, Interval, Prediction
+from hexapod_doe.records.findings import TwoPart
+from hexapod_doe.records.results import Analysis, Interval, Prediction
 
 
 @dataclass(frozen=True)

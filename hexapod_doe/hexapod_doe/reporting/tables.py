@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pandas as pd
 
-from hexapod_doe.analysis.results import Analysis, Prediction
 from hexapod_doe.fitting.alias_matrix import short_alias, with_partial_aliases
+from hexapod_doe.records.results import Analysis, Prediction
 from hexapod_doe.reporting.formats import MISSING, aligned, chance, interval
 from hexapod_doe.reporting.standing import Standing, standings
 from hexapod_doe.sheets.write import write_csv

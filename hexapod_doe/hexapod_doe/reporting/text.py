@@ -8,10 +8,10 @@ Every sentence is derived from the numbers of the analysis.
 
 from dataclasses import dataclass
 
-from hexapod_doe.analysis.findings import Purchase
-from hexapod_doe.analysis.results import Analysis
 from hexapod_doe.designs.planner import FULL_TRAINING
 from hexapod_doe.fitting.alias_matrix import short_alias
+from hexapod_doe.records.findings import Purchase
+from hexapod_doe.records.results import Analysis
 from hexapod_doe.reporting.formats import (
     MISSING,
     capitalised,

@@ -16,12 +16,12 @@ import pandas as pd
 from hexapod_sim.command_line import CommandLine, number, whole
 
 from hexapod_doe.analysis.analysis import analyse
-from hexapod_doe.analysis.findings import Bounds, Estimate
-from hexapod_doe.analysis.options import Options
-from hexapod_doe.analysis.results import Analysis
 from hexapod_doe.choosing.attribution import alias_safe
 from hexapod_doe.choosing.prediction import rank_descending
 from hexapod_doe.fitting.model import corners, estimable_terms, labels
+from hexapod_doe.records.findings import Bounds, Estimate
+from hexapod_doe.records.options import Options
+from hexapod_doe.records.results import Analysis
 from hexapod_doe.studies.scenarios import SCENARIOS, Scenario
 from hexapod_doe.studies.simulated import table_of
 from hexapod_doe.studies.tally import COMPARED, STATED, Tally

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pandas as pd
 
-from hexapod_doe.analysis.findings import Bounds
+from hexapod_doe.records.findings import Bounds
 
 STATED = 'stated'
 COMPARED = 'for comparison'

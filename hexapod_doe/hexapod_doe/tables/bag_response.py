@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 
 from hexapod_doe.bags.run_record import RunRecord
-from hexapod_doe.choosing.estimands import estimand
 from hexapod_doe.errors import AnalysisError, BagError
+from hexapod_doe.fitting.estimands import estimand
 
 DEFAULT_RESPONSE = 'final_average_reward'
 TERM_PREFIX = 'term_'

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from hexapod_doe.analysis.findings import Estimate, TwoPart
 from hexapod_doe.designs.terms import is_interaction
 from hexapod_doe.fitting.dispersion import Dispersion
+from hexapod_doe.records.findings import Estimate, TwoPart
 
 _APART = 0.25
 """Where two statements of a mean differ for more than this share of the sets, one is wrong."""

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from hexapod_doe.analysis.analysis_json import to_json
-from hexapod_doe.analysis.results import Analysis, Step
 from hexapod_doe.fitting.transform import Transform
+from hexapod_doe.records.results import Analysis, Step
 
 DOCUMENT = (Path(__file__).parents[3] / 'docs' / 'analysis_json.md').read_text()
 

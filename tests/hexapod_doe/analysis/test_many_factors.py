@@ -10,8 +10,8 @@ from multiprocessing import get_context
 import numpy as np
 import pytest
 from hexapod_doe.analysis.analysis import analyse
-from hexapod_doe.analysis.options import Options
 from hexapod_doe.fitting.model import corners
+from hexapod_doe.records.options import Options
 from hexapod_doe.studies.simulated import table_of
 
 

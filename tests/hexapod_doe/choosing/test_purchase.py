@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hexapod_doe.analysis.analysis import analyse
-from hexapod_doe.analysis.findings import Purchase
-from hexapod_doe.analysis.options import Options
 from hexapod_doe.choosing.devices import DeviceTable, read_devices
 from hexapod_doe.choosing.purchase import any_breaks, cheapest_not_worse, letters_of, pareto
 from hexapod_doe.designs.design import fraction
 from hexapod_doe.errors import AnalysisError
 from hexapod_doe.fitting.model import corners, labels
+from hexapod_doe.records.findings import Purchase
+from hexapod_doe.records.options import Options
 from hexapod_doe.studies.simulated import Truth, repeated_levels, table_of
 
 

@@ -7,10 +7,10 @@ import numpy as np
 import pandas as pd
 import pytest
 from hexapod_doe.choosing.draws import coefficient_draws
+from hexapod_doe.choosing.estimate import estimates
 from hexapod_doe.choosing.prediction import half_widths
 from hexapod_doe.designs.design import fraction
 from hexapod_doe.fitting.blocks import block_basis
-from hexapod_doe.fitting.estimate import estimates
 from hexapod_doe.fitting.model import corners, model_matrix
 from hexapod_doe.fitting.regression import Fit, ols
 from hexapod_doe.tables.table import BLOCK, RESPONSE, RunTable, build_rows

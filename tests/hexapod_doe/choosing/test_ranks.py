@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hexapod_doe.analysis.analysis import analyse
-from hexapod_doe.analysis.options import Options
 from hexapod_doe.choosing.ranks import groups, ranks_of, share_of_top
+from hexapod_doe.records.options import Options
 from hexapod_doe.tables.csv_table import read_csv
 
 DATA = Path(__file__).parents[2] / 'data' / 'doe_cases'

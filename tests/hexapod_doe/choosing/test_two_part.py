@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hexapod_doe.analysis.analysis import analyse
-from hexapod_doe.analysis.options import Options
 from hexapod_doe.choosing.two_part import fit_parts, select_parts
 from hexapod_doe.designs.design import fraction
 from hexapod_doe.fitting.model import corners, labels
+from hexapod_doe.records.options import Options
 from hexapod_doe.studies.simulated import Truth, repeated_levels, table_of
 from hexapod_doe.tables.csv_table import read_csv
 from hexapod_doe.tables.table import RunTable

@@ -9,7 +9,6 @@ import numpy as np
 import pandas as pd
 import pytest
 from hexapod_doe.analysis.analysis import analyse
-from hexapod_doe.analysis.options import Options
 from hexapod_doe.designs.design import fraction
 from hexapod_doe.fitting.alias_matrix import (
     alias_matrix,
@@ -18,6 +17,7 @@ from hexapod_doe.fitting.alias_matrix import (
     without_arbitrary,
 )
 from hexapod_doe.fitting.model import corners, estimable_terms
+from hexapod_doe.records.options import Options
 from hexapod_doe.tables.csv_table import read_csv
 
 CASES = Path(__file__).parents[2] / 'data' / 'cases'

@@ -9,12 +9,12 @@ import numpy as np
 import pandas as pd
 import pytest
 from hexapod_doe.analysis.analysis import analyse
-from hexapod_doe.analysis.options import Options
-from hexapod_doe.analysis.results import Analysis
 from hexapod_doe.choosing.averaging import average
 from hexapod_doe.fitting.blocks import block_basis
 from hexapod_doe.fitting.curvature import Curvature, curvature
-from hexapod_doe.fitting.pipeline import run
+from hexapod_doe.modelling.pipeline import run
+from hexapod_doe.records.options import Options
+from hexapod_doe.records.results import Analysis
 from hexapod_doe.tables.csv_table import read_csv
 from statsmodels.formula.api import ols as formula_fit
 from statsmodels.regression.linear_model import RegressionResults

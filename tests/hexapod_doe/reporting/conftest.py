@@ -9,10 +9,10 @@ import numpy as np
 import pandas as pd
 import pytest
 from hexapod_doe.analysis.analysis import analyse
-from hexapod_doe.analysis.options import Options
-from hexapod_doe.analysis.results import Analysis
 from hexapod_doe.designs.design import fraction
 from hexapod_doe.designs.plan_table import make_plan
+from hexapod_doe.records.options import Options
+from hexapod_doe.records.results import Analysis
 from hexapod_doe.reporting.report import write_report
 from hexapod_doe.tables.table import RunTable, build_rows
 from hexapod_sim.sensor_table import CHANNELS

@@ -11,7 +11,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 from hexapod_doe.analysis.analysis import analyse
-from hexapod_doe.analysis.options import Options
+from hexapod_doe.records.options import Options
 from hexapod_doe.reporting.figures.chart import Chart
 from hexapod_doe.reporting.report import render, sections
 from hexapod_doe.tables.csv_table import read_csv

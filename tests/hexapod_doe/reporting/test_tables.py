@@ -9,7 +9,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 from hexapod_doe.analysis.analysis import analyse
-from hexapod_doe.analysis.options import Options
+from hexapod_doe.records.options import Options
 from hexapod_doe.reporting import findings, models, tables
 from hexapod_doe.reporting.tables import Table
 from hexapod_doe.tables.csv_table import read_csv

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pandas as pd
 import pytest
-from hexapod_doe.analysis.findings import Estimate
+from hexapod_doe.records.findings import Estimate
 from hexapod_doe.reporting import text
 from hexapod_doe.reporting.figures import predictions
 from hexapod_doe.tables.table import CURVE_COLUMNS

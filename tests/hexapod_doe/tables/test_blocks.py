@@ -9,11 +9,11 @@ import numpy as np
 import pandas as pd
 import pytest
 from hexapod_doe.analysis.analysis import analyse
-from hexapod_doe.analysis.options import Options
-from hexapod_doe.analysis.results import Analysis
 from hexapod_doe.designs.design import fraction
 from hexapod_doe.designs.plan_table import make_plan
 from hexapod_doe.errors import TableError
+from hexapod_doe.records.options import Options
+from hexapod_doe.records.results import Analysis
 from hexapod_doe.tables.csv_table import read_csv
 
 LUCK = (-80.0, -40.0, 0.0, 40.0, 80.0)

@@ -8,9 +8,9 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hexapod_doe.analysis.results import Analysis, MainEffect
 from hexapod_doe.designs.terms import CONSTANT, is_interaction, order
 from hexapod_doe.fitting.alias_matrix import short_alias
+from hexapod_doe.records.results import Analysis, MainEffect
 from hexapod_doe.reporting.figures.chart import Chart
 from hexapod_doe.reporting.figures.parts import (
     canvas,

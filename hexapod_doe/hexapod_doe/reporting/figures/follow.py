@@ -8,7 +8,7 @@ from pathlib import Path
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from hexapod_doe.analysis.follow import BAND, Track
+from hexapod_doe.replays.follow import BAND, Track
 from hexapod_doe.reporting.figures.style import BLUE, GRID, ORANGE, RC, WIDE
 
 _PNG_DPI = 160

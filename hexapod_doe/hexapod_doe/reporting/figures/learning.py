@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from hexapod_doe.analysis.results import Analysis
+from hexapod_doe.records.results import Analysis
 from hexapod_doe.reporting.figures.chart import Chart
 from hexapod_doe.reporting.figures.outliers import outliers
 from hexapod_doe.reporting.figures.parts import canvas, failed, grid, is_wide, unit_label

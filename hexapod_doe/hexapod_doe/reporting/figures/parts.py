@@ -10,7 +10,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hexapod_doe.analysis.results import Analysis, DesignSummary
+from hexapod_doe.records.results import Analysis, DesignSummary
 from hexapod_doe.reporting.figures.style import WIDE
 
 

@@ -10,7 +10,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hexapod_doe.analysis.results import Analysis
+from hexapod_doe.records.results import Analysis
 from hexapod_doe.reporting.figures.chart import Chart
 from hexapod_doe.reporting.figures.parts import canvas, design_label, designs, is_wide, unit_label
 from hexapod_doe.reporting.figures.style import BLUE, GRID, INK, MARKERS, MUTED, SERIES, SURFACE

@@ -9,8 +9,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hexapod_doe.analysis.findings import PricedSet, Purchase
-from hexapod_doe.analysis.results import Analysis
+from hexapod_doe.records.findings import PricedSet, Purchase
+from hexapod_doe.records.results import Analysis
 from hexapod_doe.reporting.figures.chart import Chart
 from hexapod_doe.reporting.figures.parts import canvas, is_wide, unit_label
 from hexapod_doe.reporting.figures.style import BLUE, INK, MUTED, ORANGE, SURFACE

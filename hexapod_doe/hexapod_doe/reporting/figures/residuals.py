@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from scipy import stats
 
-from hexapod_doe.analysis.results import Analysis, Step
+from hexapod_doe.records.results import Analysis, Step
 from hexapod_doe.reporting.figures.chart import Chart
 from hexapod_doe.reporting.figures.parts import canvas
 from hexapod_doe.reporting.figures.style import BLUE, INK, MUTED, ORANGE, SURFACE

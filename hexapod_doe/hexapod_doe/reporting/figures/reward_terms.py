@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from hexapod_doe.analysis.results import Analysis
+from hexapod_doe.records.results import Analysis
 from hexapod_doe.reporting.figures.chart import Chart
 from hexapod_doe.reporting.figures.parts import grid, is_wide
 from hexapod_doe.reporting.figures.style import BLUE, MUTED

@@ -11,9 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scipy import stats
 
-from hexapod_doe.analysis.results import Analysis, Step
 from hexapod_doe.designs.terms import CONSTANT
 from hexapod_doe.fitting.alias_matrix import short_alias
+from hexapod_doe.records.results import Analysis, Step
 from hexapod_doe.reporting.figures.chart import Chart
 from hexapod_doe.reporting.figures.parts import canvas, is_wide
 from hexapod_doe.reporting.figures.style import BLUE, INK, MUTED, ORANGE, SURFACE

@@ -7,11 +7,11 @@ import math
 
 import numpy as np
 import pytest
-from hexapod_doe.analysis.follow import Track, read_track, responses, step_response
 from hexapod_doe.bags.bag_writer import BagWriter
 from hexapod_doe.bags.rosbag2 import Topic
 from hexapod_doe.errors import BagError
 from hexapod_doe.follow_report import main
+from hexapod_doe.replays.follow import Track, read_track, responses, step_response
 
 PERIOD_S = 0.025
 TIME = np.arange(601) * PERIOD_S

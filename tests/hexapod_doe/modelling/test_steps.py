@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 from hexapod_doe.fitting.model import estimable_terms
 from hexapod_doe.fitting.regression import ols
-from hexapod_doe.fitting.steps import main_effects
+from hexapod_doe.modelling.steps import main_effects
 from hexapod_doe.tables.csv_table import read_csv
 from statsmodels.formula.api import ols as formula_fit
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 import numpy as np
 import pandas as pd
 
-from hexapod_doe.analysis.options import Options
 from hexapod_doe.designs.terms import CONSTANT, CURVATURE, is_interaction, order
 from hexapod_doe.errors import TableError
 from hexapod_doe.fitting.alias_matrix import without_arbitrary
@@ -17,6 +16,7 @@ from hexapod_doe.fitting.lenth import Lenth, lenth
 from hexapod_doe.fitting.model import estimable_terms, model_matrix, parse_terms
 from hexapod_doe.fitting.regression import Fit, ols
 from hexapod_doe.fitting.transform import Transform, choose_transform
+from hexapod_doe.records.options import Options
 from hexapod_doe.tables.table import RESPONSE, RunTable
 
 

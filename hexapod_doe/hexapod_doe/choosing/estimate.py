@@ -17,14 +17,14 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from hexapod_doe.analysis.findings import EstimandResult, Estimate
-from hexapod_doe.choosing.estimands import Estimand, estimand, pseudo_values
 from hexapod_doe.choosing.prediction import rank_descending
 from hexapod_doe.fitting.alias_matrix import without_arbitrary
 from hexapod_doe.fitting.blocks import BlockTest
+from hexapod_doe.fitting.estimands import Estimand, estimand, pseudo_values
 from hexapod_doe.fitting.left_out import left_out
 from hexapod_doe.fitting.model import corners, estimable_terms, labels, model_matrix
 from hexapod_doe.fitting.regression import Fit, ols
+from hexapod_doe.records.findings import EstimandResult, Estimate
 from hexapod_doe.tables.table import BLOCK, RunTable
 
 STATED = ('mean', 'iqm', 'best_of:3')

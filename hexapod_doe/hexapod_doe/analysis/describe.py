@@ -8,11 +8,11 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from hexapod_doe.analysis.results import Analysis, DesignSummary
 from hexapod_doe.designs.aliases import defining_relation, defining_words, resolution
 from hexapod_doe.fitting.alias_matrix import short_alias, with_partial_aliases
 from hexapod_doe.fitting.model import centre_points, corners, labels
 from hexapod_doe.fitting.transform import BOUNDS
+from hexapod_doe.records.results import Analysis, DesignSummary
 from hexapod_doe.tables.table import BLOCK, RunTable
 
 _MISSING_SHARE = 0.25

@@ -7,14 +7,14 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from hexapod_doe.analysis.results import MainEffect, Removal, Step
 from hexapod_doe.designs.terms import CONSTANT
 from hexapod_doe.fitting.alias_matrix import partial_aliases, with_partial_aliases
 from hexapod_doe.fitting.anova import anova, vif
 from hexapod_doe.fitting.elimination import Dropped
 from hexapod_doe.fitting.model import alias_strings, estimable_terms
-from hexapod_doe.fitting.pipeline import FittedStep
 from hexapod_doe.fitting.regression import Fit, ols
+from hexapod_doe.modelling.pipeline import FittedStep
+from hexapod_doe.records.results import MainEffect, Removal, Step
 from hexapod_doe.tables.table import RunTable
 
 

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 from hexapod_doe.analysis.analyze_arguments import build_parser
-from hexapod_doe.analysis.options import Options
 from hexapod_doe.errors import AnalysisError
+from hexapod_doe.records.options import Options
 from hexapod_sim.command_line import options_of
 
 from hexapod_doe import analyze

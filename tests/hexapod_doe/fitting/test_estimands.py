@@ -6,8 +6,8 @@ from itertools import combinations
 import numpy as np
 import pandas as pd
 import pytest
-from hexapod_doe.choosing.estimands import case_values, estimand, pseudo_values
 from hexapod_doe.errors import AnalysisError, TableError
+from hexapod_doe.fitting.estimands import case_values, estimand, pseudo_values
 
 SQUARES = np.arange(1.0, 11.0) ** 2
 CASE = pd.Series([7] * 10)

@@ -9,7 +9,13 @@ from typing import Any
 
 import pandas as pd
 
-from hexapod_doe.analysis.findings import (
+from hexapod_doe.fitting.anova import AnovaRow
+from hexapod_doe.fitting.blocks import BlockTest
+from hexapod_doe.fitting.curvature import Curvature
+from hexapod_doe.fitting.lenth import Lenth
+from hexapod_doe.fitting.pure_error import LackOfFit
+from hexapod_doe.fitting.transform import Transform
+from hexapod_doe.records.findings import (
     Attribution,
     Averaging,
     Confirmation,
@@ -19,12 +25,6 @@ from hexapod_doe.analysis.findings import (
     RankUncertainty,
     TwoPart,
 )
-from hexapod_doe.fitting.anova import AnovaRow
-from hexapod_doe.fitting.blocks import BlockTest
-from hexapod_doe.fitting.curvature import Curvature
-from hexapod_doe.fitting.lenth import Lenth
-from hexapod_doe.fitting.pure_error import LackOfFit
-from hexapod_doe.fitting.transform import Transform
 
 Interval = tuple[float | None, float | None]
 

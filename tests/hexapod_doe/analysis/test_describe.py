@@ -4,10 +4,10 @@
 import numpy as np
 import pytest
 from hexapod_doe.analysis.analysis import analyse
-from hexapod_doe.analysis.options import Options
+from hexapod_doe.analysis.describe import summarise
 from hexapod_doe.designs.design import fraction
+from hexapod_doe.records.options import Options
 from hexapod_doe.studies.simulated import repeated_levels, table_of
-from hexapod_doe.tables.describe import summarise
 
 
 def caveats(design: str, response: np.ndarray, **options: object) -> str:

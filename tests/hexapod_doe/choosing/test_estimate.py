@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from hexapod_doe.choosing.estimands import estimand
+from hexapod_doe.choosing.estimate import estimate, estimates
 from hexapod_doe.designs.design import fraction
-from hexapod_doe.fitting.estimate import estimate, estimates
+from hexapod_doe.fitting.estimands import estimand
 from hexapod_doe.fitting.model import corners, estimable_terms
 from hexapod_doe.fitting.regression import ols
 from hexapod_doe.studies.simulated import Truth, repeated_levels, table_of
