@@ -21,7 +21,7 @@ setup(
     zip_safe=False,
     entry_points={
         'console_scripts': [
-            'cpg_node = hexapod_cpg.executables:cpg_node',
+            'cpg_node = hexapod_cpg.nodes.executables:cpg_node',
         ],
     },
 )

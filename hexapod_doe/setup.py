@@ -26,9 +26,9 @@ setup(
     zip_safe=False,
     entry_points={
         'console_scripts': [
-            'manager_node = hexapod_doe.executables:manager_node',
-            'recorder_node = hexapod_doe.executables:recorder_node',
-            'player_node = hexapod_doe.executables:player_node',
+            'manager_node = hexapod_doe.nodes.executables:manager_node',
+            'recorder_node = hexapod_doe.nodes.executables:recorder_node',
+            'player_node = hexapod_doe.nodes.executables:player_node',
             'plan = hexapod_doe.plan:main',
             'run_case = hexapod_doe.run_case:main',
             'run_fleet = hexapod_doe.run_fleet:main',
@@ -36,7 +36,7 @@ setup(
             'follow_report = hexapod_doe.follow_report:main',
             'rescore = hexapod_doe.rescore:main',
             'shadow = hexapod_doe.shadow:main',
-            'check_sensors = hexapod_doe.check_sensors_node:main',
+            'check_sensors = hexapod_doe.nodes.check_sensors_node:main',
             'campaign_status = hexapod_doe.campaign_status:main',
         ],
     },

@@ -22,8 +22,8 @@ setup(
     zip_safe=False,
     entry_points={
         'console_scripts': [
-            'sim_node = hexapod_sim.executables:sim_node',
-            'fake_driver = hexapod_sim.executables:fake_driver_node',
+            'sim_node = hexapod_sim.nodes.executables:sim_node',
+            'fake_driver = hexapod_sim.nodes.executables:fake_driver_node',
         ],
     },
 )

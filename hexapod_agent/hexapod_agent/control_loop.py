@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from hexapod_cpg.mapping import ACTION_SIZE, command_from_action
-from hexapod_cpg.messages import command_to_message
+from hexapod_cpg.nodes.messages import command_to_message
 from hexapod_interfaces.msg import CpgCommand, StepOutcome
 from hexapod_node.lock_step import LockStep
 from hexapod_node.raw_topics import message_class

@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from hexapod_cpg.cpg_node import CpgNode
+from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import StepOutcome
 from hexapod_node.actions import ActionClient

@@ -11,7 +11,7 @@ from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
 from diagnostic_msgs.msg import DiagnosticStatus
-from hexapod_cpg.messages import command_to_message
+from hexapod_cpg.nodes.messages import command_to_message
 from hexapod_interfaces.msg import CpgCommand
 from hexapod_node.calls import ServiceUnavailableError, call
 from hexapod_node.conditions import until_true

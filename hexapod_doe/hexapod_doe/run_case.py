@@ -64,7 +64,7 @@ def _settings(args: argparse.Namespace) -> RunSettings:
 
 def _train(row: Row, settings: RunSettings, stall_s: float) -> int:
     """Train the row and judge its bag."""
-    from hexapod_doe.case_node import train_row  # what is done needs neither ROS nor torch
+    from hexapod_doe.nodes.case_node import train_row  # what is done needs neither ROS nor torch
 
     try:
         train_row(row, settings, stall_s)

@@ -64,7 +64,7 @@ def _parser() -> CommandLine:
 def _compare(options: argparse.Namespace) -> list[Comparison]:
     if options.graph:
         # Only here: without --graph, comparing needs no nodes.
-        from hexapod_doe.shadow_node import shadow_on_graph
+        from hexapod_doe.nodes.shadow_node import shadow_on_graph
 
         return shadow_on_graph(options.bag, options.checkpoint, options.episode)
     bag, trainer = BagFile(options.bag), load(options.checkpoint)

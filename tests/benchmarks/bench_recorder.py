@@ -18,7 +18,7 @@ import rclpy
 from hexapod_doe.bags.recording import Recording
 from hexapod_doe.bags.rosbag2 import Topic
 from hexapod_doe.bags.run_bag import EPISODE_RESULT
-from hexapod_doe.recorder_node import RecorderNode
+from hexapod_doe.nodes.recorder_node import RecorderNode
 from hexapod_interfaces.msg import EpisodeResult
 from hexapod_interfaces.srv import RecordEpisode, StartRecording
 from hexapod_node.qos import LOCK_STEP

@@ -17,7 +17,7 @@ from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.train import train_episode
 from hexapod_agent.training import Trainer
-from hexapod_cpg.cpg_node import CpgNode
+from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import EpisodeResult
 from hexapod_node.subscriptions import subscribed_topics

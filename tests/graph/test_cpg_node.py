@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from hexapod_cpg.cpg import Cpg
-from hexapod_cpg.cpg_node import CpgNode
 from hexapod_cpg.mapping import ActionRanges, command_from_action
-from hexapod_cpg.messages import command_to_message
+from hexapod_cpg.nodes.cpg_node import CpgNode
+from hexapod_cpg.nodes.messages import command_to_message
 from hexapod_cpg.oscillator import HopfConfig
 from hexapod_interfaces.msg import CpgCommand, CpgState
 from hexapod_interfaces.srv import ResetEpisode

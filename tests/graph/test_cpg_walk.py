@@ -15,10 +15,10 @@ from collections import Counter
 import numpy as np
 import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
-from hexapod_cpg.cpg_node import CpgNode
 from hexapod_cpg.locomotion import Motion
 from hexapod_cpg.mapping import COMMAND_FIELDS, ActionRanges, command_from_action
-from hexapod_cpg.messages import command_to_message
+from hexapod_cpg.nodes.cpg_node import CpgNode
+from hexapod_cpg.nodes.messages import command_to_message
 from hexapod_interfaces.msg import CpgCommand
 from hexapod_node.stamps import time_message, to_nanoseconds
 from lifecycle_msgs.msg import Transition

@@ -11,9 +11,9 @@ import pytest
 from diagnostic_msgs.msg import DiagnosticArray
 from hexapod_agent.agent_node import AgentNode
 from hexapod_bringup.description_node import DescriptionNode
-from hexapod_cpg.cpg_node import CpgNode
-from hexapod_doe.player_node import PlayerNode
-from hexapod_doe.recorder_node import RecorderNode
+from hexapod_cpg.nodes.cpg_node import CpgNode
+from hexapod_doe.nodes.player_node import PlayerNode
+from hexapod_doe.nodes.recorder_node import RecorderNode
 from hexapod_node.stamps import to_nanoseconds
 from hexapod_sim.nodes.fake_driver_node import FakeDriverNode
 from hexapod_sim.nodes.sim_node import SimNode

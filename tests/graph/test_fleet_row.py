@@ -16,13 +16,13 @@ from hexapod_agent.fleet.crew import Crew
 from hexapod_agent.run_checkpoint import checkpoint_path
 from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer, TrainingDivergedError
-from hexapod_cpg.cpg_node import CpgNode
+from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_doe.bags.run_record import read_run
 from hexapod_doe.bags.verify import verify
 from hexapod_doe.campaigns.campaign import Row, RunSettings
 from hexapod_doe.campaigns.fleet_row import FleetRow
-from hexapod_doe.campaigns.messages import train_goal
-from hexapod_doe.recorder_node import RecorderNode
+from hexapod_doe.nodes.recorder_node import RecorderNode
+from hexapod_doe.nodes.train_goal import train_goal
 from hexapod_doe.run_fleet import build_fleet
 from hexapod_sim.nodes.sim_node import SimNode
 

@@ -18,9 +18,9 @@ from hexapod_agent.agent_node import AgentNode
 from hexapod_agent.play_node import PlayNode
 from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
-from hexapod_cpg.cpg_node import CpgNode
 from hexapod_cpg.mapping import ActionRanges, command_from_action
-from hexapod_cpg.messages import OutputMessages, command_to_message
+from hexapod_cpg.nodes.cpg_node import CpgNode
+from hexapod_cpg.nodes.messages import OutputMessages, command_to_message
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import CpgCommand
 from hexapod_interfaces.srv import ResetEpisode

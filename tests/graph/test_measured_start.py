@@ -10,10 +10,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from hexapod_cpg.cpg_node import CpgNode
 from hexapod_cpg.locomotion import Motion
 from hexapod_cpg.mapping import ActionRanges, command_from_action
-from hexapod_cpg.messages import command_to_message
+from hexapod_cpg.nodes.cpg_node import CpgNode
+from hexapod_cpg.nodes.messages import command_to_message
 from hexapod_interfaces.msg import CpgCommand, CpgState
 from hexapod_node.qos import DRIVER
 from hexapod_node.stamps import to_nanoseconds

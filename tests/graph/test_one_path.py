@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from hexapod_agent.agent_node import AgentNode
 from hexapod_agent.training import Trainer
-from hexapod_cpg.cpg_node import CpgNode
+from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_sim.nodes.sim_node import SimNode
 from hexapod_sim.sensor_table import LETTERS

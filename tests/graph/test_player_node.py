@@ -17,7 +17,7 @@ from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.bags.bag_writer import BagWriter
 from hexapod_doe.bags.rosbag2 import OfferedQos, Topic
 from hexapod_doe.errors import BagError
-from hexapod_doe.player_node import PlayerNode
+from hexapod_doe.nodes.player_node import PlayerNode
 from hexapod_node.qos import LOCK_STEP
 from hexapod_node.raw_topics import subscribe_raw
 from rclpy.parameter import Parameter
@@ -303,7 +303,7 @@ def test_unusable_bag_is_one_line_and_status_1(bag, fault, told):
         file = bag / 'run_0.mcap'
         file.write_bytes(b'' if fault == 'empty' else file.read_bytes()[:-20])
     done = subprocess.run(
-        [sys.executable, '-m', 'hexapod_doe.player_node', '--ros-args', '-p', f'bag:={bag}'],
+        [sys.executable, '-m', 'hexapod_doe.nodes.player_node', '--ros-args', '-p', f'bag:={bag}'],
         capture_output=True,
         text=True,
         timeout=30,

@@ -13,8 +13,8 @@ from diagnostic_msgs.msg import DiagnosticArray
 from hexapod_agent.play_node import PlayNode
 from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
-from hexapod_cpg.cpg_node import CpgNode
 from hexapod_cpg.locomotion import Motion
+from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_node.stamps import to_nanoseconds
 from hexapod_sim.nodes.sim_node import SimNode
 from lifecycle_msgs.msg import State, Transition

@@ -9,7 +9,7 @@ import time
 
 import numpy as np
 import pytest
-from hexapod_cpg.cpg_node import CpgNode
+from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_node.stamps import to_nanoseconds
 from hexapod_sim.nodes.sim_node import SimNode
 from sensor_msgs.msg import JointState

@@ -13,11 +13,11 @@ import pytest
 from hexapod_agent.agent_node import AgentNode
 from hexapod_agent.run_checkpoint import checkpoint_path
 from hexapod_agent.training import Trainer
-from hexapod_cpg.cpg_node import CpgNode
+from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_doe.bags.bag_state import is_complete
 from hexapod_doe.bags.run_record import read_run, read_topic
 from hexapod_doe.bags.verify import verify
-from hexapod_doe.recorder_node import RecorderNode
+from hexapod_doe.nodes.recorder_node import RecorderNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_sim.nodes.sim_node import SimNode
 

@@ -17,14 +17,14 @@ from hexapod_agent.observation import ObservationSpec
 from hexapod_agent.policies import trained_policy
 from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
-from hexapod_cpg.cpg_node import CpgNode
+from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.errors import BagError
-from hexapod_doe.recorder_node import RecorderNode
+from hexapod_doe.nodes.recorder_node import RecorderNode
+from hexapod_doe.nodes.shadow_node import ShadowNode
 from hexapod_doe.replays.episodes import Series, recorded_episodes
 from hexapod_doe.replays.shadowing import COMMAND, COMMAND_TYPE, Recorded, shadow
 from hexapod_doe.shadow import main
-from hexapod_doe.shadow_node import ShadowNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_node.coroutines import start
 from hexapod_sim.nodes.sim_node import SimNode

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import TwistStamped, WrenchStamped
-from hexapod_cpg.messages import OutputMessages
+from hexapod_cpg.nodes.messages import OutputMessages
 from hexapod_interfaces.msg import FootContacts, LineOffset, StepOutcome
 from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.stamps import time_message, to_nanoseconds

@@ -18,8 +18,8 @@ from hexapod_agent.play_node import PlayNode
 from hexapod_agent.real_time import State
 from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
-from hexapod_cpg.cpg_node import CpgNode
 from hexapod_cpg.locomotion import Motion
+from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_node.coroutines import start
 from hexapod_sim.driver_faults import DEVICES as ROWS
 from hexapod_sim.driver_faults import fault_names

@@ -28,7 +28,7 @@ RESULTS = 30
 @pytest.fixture
 def recorder(tmp_path):
     """A recorder process with an open run, to which RESULTS results were published."""
-    command = [sys.executable, '-m', 'hexapod_doe.recorder_node', '--ros-args']
+    command = [sys.executable, '-m', 'hexapod_doe.nodes.recorder_node', '--ros-args']
     process = subprocess.Popen([*command, '-p', f'root:={tmp_path}'])
     rclpy.init()
     node = rclpy.create_node('agent')

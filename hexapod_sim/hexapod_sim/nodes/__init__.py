@@ -1,4 +1,4 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""MuJoCo model of the hexapod, its sensors and the line-following task."""
+"""The nodes of the simulator and of the test double of a robot, and their messages."""

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import rclpy
 from diagnostic_msgs.msg import KeyValue
-from hexapod_doe.recorder_node import RecorderNode
+from hexapod_doe.nodes.recorder_node import RecorderNode
 from hexapod_interfaces.msg import CpgCommand, EpisodeResult
 from hexapod_interfaces.srv import FinishRecording, RecordEpisode, StartRecording
 from hexapod_node.qos import LOCK_STEP

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from hexapod_agent.observation import ObservationSpec
 from hexapod_doe.bags.bag_file import BagFile
-from hexapod_doe.check_sensors_node import main
+from hexapod_doe.nodes.check_sensors_node import main
 from hexapod_sim.sensor_table import CHANNELS
 
 CASES = Path(__file__).resolve().parents[2] / 'data/cases'

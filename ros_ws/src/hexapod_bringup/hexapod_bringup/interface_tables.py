@@ -19,15 +19,15 @@ from hexapod_agent.agent_node import AgentNode
 from hexapod_agent.play_node import PlayNode
 from hexapod_agent.run_spec import RunSpec
 from hexapod_agent.training import Trainer
-from hexapod_cpg.cpg_node import CpgNode
+from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.designs.design import fraction
 from hexapod_doe.designs.plan_file import write_plan
 from hexapod_doe.designs.plan_table import make_plan
-from hexapod_doe.manager_node import PARAMETERS as MANAGER_PARAMETERS
-from hexapod_doe.manager_node import ManagerNode
-from hexapod_doe.player_node import PlayerNode
-from hexapod_doe.recorder_node import RecorderNode
+from hexapod_doe.nodes.manager_node import PARAMETERS as MANAGER_PARAMETERS
+from hexapod_doe.nodes.manager_node import ManagerNode
+from hexapod_doe.nodes.player_node import PlayerNode
+from hexapod_doe.nodes.recorder_node import RecorderNode
 from hexapod_node.session import begin
 from hexapod_node.sync import LOCKSTEP, REALTIME
 from hexapod_sim.command_line import CommandLine, file

@@ -20,8 +20,8 @@ def make_worker() -> list[Node]:
     order.
     """
     from hexapod_agent.agent_node import AgentNode
-    from hexapod_cpg.cpg_node import CpgNode
-    from hexapod_doe.recorder_node import RecorderNode
+    from hexapod_cpg.nodes.cpg_node import CpgNode
+    from hexapod_doe.nodes.recorder_node import RecorderNode
     from hexapod_sim.nodes.sim_node import SimNode
 
     return [SimNode(), CpgNode(), RecorderNode(), AgentNode()]

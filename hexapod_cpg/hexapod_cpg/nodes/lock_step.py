@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from trajectory_msgs.msg import JointTrajectory
 
 from hexapod_cpg.locomotion import Locomotion, Motion
-from hexapod_cpg.messages import OutputMessages, command_from_message
+from hexapod_cpg.nodes.messages import OutputMessages, command_from_message
 from hexapod_cpg.oscillator import HopfConfig
 
 if TYPE_CHECKING:

@@ -5,6 +5,4 @@
 
 from hexapod_node.executable import executable
 
-manager_node = executable('hexapod_doe.manager_node')
-recorder_node = executable('hexapod_doe.recorder_node')
-player_node = executable('hexapod_doe.player_node')
+cpg_node = executable('hexapod_cpg.nodes.cpg_node')

@@ -19,11 +19,11 @@ from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackRet
 from rclpy.parameter import Parameter as RclpyParameter
 
 from hexapod_cpg.joint_guard import JointGuard
-from hexapod_cpg.lock_step import LockStepCpg
 from hexapod_cpg.locomotion import Locomotion
-from hexapod_cpg.measured_start import START_FROM
+from hexapod_cpg.nodes.lock_step import LockStepCpg
+from hexapod_cpg.nodes.measured_start import START_FROM
+from hexapod_cpg.nodes.real_time import RealTimeCpg
 from hexapod_cpg.oscillator import HopfConfig
-from hexapod_cpg.real_time import RealTimeCpg
 
 PARAMETERS = (
     SYNC,

@@ -36,12 +36,12 @@ from hexapod_doe.campaigns.dashboard import Dashboard
 from hexapod_doe.campaigns.failures import FailureLog
 from hexapod_doe.campaigns.forecast import forecast
 from hexapod_doe.campaigns.local_workers import LocalWorkers
-from hexapod_doe.campaigns.messages import train_goal
 from hexapod_doe.campaigns.page_writer import PageWriter
-from hexapod_doe.campaigns.peers import Ended, WorkerBusyError, WorkerLostError, WorkerPeer
 from hexapod_doe.campaigns.plan_copy import keep_config
 from hexapod_doe.cores import usable_cores
 from hexapod_doe.errors import CampaignError
+from hexapod_doe.nodes.train_goal import train_goal
+from hexapod_doe.nodes.worker_client import Ended, WorkerBusyError, WorkerClient, WorkerLostError
 
 _ACTION = 'hexapod_interfaces/action/TrainRun'
 _TICK_S = 0.2
@@ -105,7 +105,7 @@ class ManagerNode(Node):
         keep_config(self._campaign.directory, self._settings.loaded())
         self._failures = FailureLog(self._campaign.directory)
         self._failures.clear()
-        self._workers: dict[str, WorkerPeer] = {}
+        self._workers: dict[str, WorkerClient] = {}
         self._buried: set[str] = set()
         """Names of local workers that died; the network knows them for a while."""
         self._alone_since = time.monotonic()
@@ -176,7 +176,7 @@ class ManagerNode(Node):
                 and name not in self._buried
             ):
                 client = ActionClient(self, TrainRun, action)
-                worker = WorkerPeer(self, client, name, self._parameter('stall_timeout'))
+                worker = WorkerClient(self, client, name, self._parameter('stall_timeout'))
                 self._workers[name] = worker
                 start(self._serve(worker)).add_done_callback(self._on_served)
 
@@ -184,7 +184,7 @@ class ManagerNode(Node):
         """Keep an error of a worker's coroutine for the next tick, which ends the node with it."""
         self._fault = served.exception() or self._fault
 
-    async def _serve(self, worker: WorkerPeer) -> None:
+    async def _serve(self, worker: WorkerClient) -> None:
         """Give a worker one row after another, for as long as it is there."""
         while not worker.gone:
             row = self._campaign.take(worker.name, self._workers) if worker.ready else None
@@ -195,7 +195,7 @@ class ManagerNode(Node):
             self._publish_status()
         worker.close()
 
-    async def _train(self, worker: WorkerPeer, row: Row) -> None:
+    async def _train(self, worker: WorkerClient, row: Row) -> None:
         """Have a worker train one row, and judge what comes back."""
         try:
             ended = await worker.train(
@@ -213,11 +213,11 @@ class ManagerNode(Node):
         else:
             self._judge(worker, row, ended)
 
-    def _on_begin(self, worker: WorkerPeer, row: Row) -> None:
+    def _on_begin(self, worker: WorkerClient, row: Row) -> None:
         self._dashboard.begin(worker.name, row.run_id, row.observations)
         self._publish_status()
 
-    def _judge(self, worker: WorkerPeer, row: Row, ended: Ended) -> None:
+    def _judge(self, worker: WorkerClient, row: Row, ended: Ended) -> None:
         """Count a row as done if its bag is whole, whatever the worker says."""
         reason = ended.message or f'bag {row.bag} is not complete'
         if self._campaign.complete(row, reason):

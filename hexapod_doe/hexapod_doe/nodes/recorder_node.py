@@ -25,12 +25,12 @@ from hexapod_sim.robot import CONTROL_PERIOD_NS
 from rclpy.serialization import deserialize_message
 
 from hexapod_doe.bags.carry_over import open_recording
-from hexapod_doe.bags.messages import recorded_topic
 from hexapod_doe.bags.recording import Recording
 from hexapod_doe.bags.run_bag import EPISODE_RESULT
 from hexapod_doe.bags.salvage import set_aside
 from hexapod_doe.errors import BagError
-from hexapod_doe.sampled_topics import SampledTopics
+from hexapod_doe.nodes.recorded_topic import recorded_topic
+from hexapod_doe.nodes.sampled_topics import SampledTopics
 
 RESULT_TOPIC = 'episode_result'
 

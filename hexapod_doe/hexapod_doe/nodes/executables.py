@@ -5,4 +5,6 @@
 
 from hexapod_node.executable import executable
 
-cpg_node = executable('hexapod_cpg.cpg_node')
+manager_node = executable('hexapod_doe.nodes.manager_node')
+recorder_node = executable('hexapod_doe.nodes.recorder_node')
+player_node = executable('hexapod_doe.nodes.player_node')

@@ -14,7 +14,7 @@ from hexapod_sim.robot import NEUTRAL_POSE
 from numpy.typing import NDArray
 from sensor_msgs.msg import JointState
 
-from hexapod_cpg.messages import pose_from_message
+from hexapod_cpg.nodes.messages import pose_from_message
 
 if TYPE_CHECKING:
     from rclpy.node import Node

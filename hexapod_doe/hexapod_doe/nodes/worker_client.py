@@ -45,7 +45,7 @@ class Ended:
     """Final average reward."""
 
 
-class WorkerPeer:
+class WorkerClient:
     """One worker.
 
     Attributes:

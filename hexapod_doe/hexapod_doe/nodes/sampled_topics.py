@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 from hexapod_node.conditions import until_true
 from hexapod_node.raw_topics import RawSubscriptions
 
-from hexapod_doe.bags.messages import recorded_topic
 from hexapod_doe.bags.recording import Recording
 from hexapod_doe.errors import BagError
+from hexapod_doe.nodes.recorded_topic import recorded_topic
 
 if TYPE_CHECKING:
     from rclpy.node import Node

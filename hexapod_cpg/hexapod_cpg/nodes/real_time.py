@@ -22,8 +22,8 @@ from trajectory_msgs.msg import JointTrajectory
 
 from hexapod_cpg.locomotion import Locomotion, Motion
 from hexapod_cpg.mapping import Command
-from hexapod_cpg.measured_start import MEASURED, MeasuredStart
-from hexapod_cpg.messages import OutputMessages, command_from_message
+from hexapod_cpg.nodes.measured_start import MEASURED, MeasuredStart
+from hexapod_cpg.nodes.messages import OutputMessages, command_from_message
 from hexapod_cpg.oscillator import HopfConfig
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hexapod_cpg.messages import pose_from_message
+from hexapod_cpg.nodes.messages import pose_from_message
 from hexapod_node.invalid_message import fault_kind
 from sensor_msgs.msg import JointState
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from hexapod_agent.action_names import TRAIN_RUN
 from hexapod_agent.agent_node import AgentNode
-from hexapod_cpg.cpg_node import CpgNode
+from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_node.actions import ActionClient
 from hexapod_node.conditions import until_true
@@ -26,9 +26,9 @@ from rclpy.signals import uninstall_signal_handlers
 from rclpy.task import Future
 
 from hexapod_doe.campaigns.campaign import Row, RunSettings
-from hexapod_doe.campaigns.messages import train_goal
-from hexapod_doe.campaigns.peers import WorkerLostError, WorkerPeer
-from hexapod_doe.recorder_node import RecorderNode
+from hexapod_doe.nodes.recorder_node import RecorderNode
+from hexapod_doe.nodes.train_goal import train_goal
+from hexapod_doe.nodes.worker_client import WorkerClient, WorkerLostError
 
 _READY_S = 10.0
 _LOG_S = 10.0
@@ -46,7 +46,7 @@ class CaseNode(Node):
         self.exit_status: int | None = None
         self._row, self._settings = row, settings
         client = ActionClient(self, TrainRun, TRAIN_RUN)
-        self._worker = WorkerPeer(self, client, self.get_namespace(), stall_s)
+        self._worker = WorkerClient(self, client, self.get_namespace(), stall_s)
         start(self._train()).add_done_callback(self._on_end)
 
     async def _train(self) -> str:
