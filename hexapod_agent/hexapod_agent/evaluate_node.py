@@ -17,9 +17,8 @@ from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import StepOutcome
 from hexapod_node.actions import ActionClient
-from hexapod_node.conditions import until_true
-from hexapod_node.coroutines import start, until
-from hexapod_node.matching import unheard
+from hexapod_node.coroutines import start, until, until_true
+from hexapod_node.matching import unmatched
 from hexapod_node.node import Node
 from hexapod_node.qos import LOCK_STEP
 from hexapod_node.raw_topics import message_class
@@ -72,8 +71,8 @@ class EvaluationNode(Node):
                 refused the goal, or ended it early.
         """
         listeners = {self.resolve_topic_name(topic): 1 for topic in _TOPICS}
-        if not await until_true(self, lambda: not unheard(sim.publishers, listeners), timeout_s):
-            fault = unheard(sim.publishers, listeners)
+        if not await until_true(self, lambda: not unmatched(sim.publishers, listeners), timeout_s):
+            fault = unmatched(sim.publishers, listeners)
             raise GraphError(f'{fault} after {timeout_s:g} s, expected that of this node')
         if not await until_true(self, self._client.server_is_ready, timeout_s):
             action = self.resolve_topic_name(PLAY_RUN)

@@ -14,10 +14,9 @@ from typing import TYPE_CHECKING
 
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import EpisodeResult
-from hexapod_node.conditions import until_true
-from hexapod_node.matching import listening_nodes, unheard
+from hexapod_node.coroutines import until_true
+from hexapod_node.matching import count_subscriber_nodes, subscribed_topics, unmatched
 from hexapod_node.stamps import time_message
-from hexapod_node.subscriptions import subscribed_topics
 from hexapod_node.timers import call_every
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from hexapod_sim.sensor_table import CHANNELS
@@ -163,7 +162,7 @@ class GraphRun:
                 listeners[topic] = listeners.get(topic, 0) + 1
         # Whoever else listens must not be taken for one of them.
         return {
-            topic: max(least, listening_nodes(self._node, topic))
+            topic: max(least, count_subscriber_nodes(self._node, topic))
             for topic, least in listeners.items()
         }
 
@@ -172,7 +171,7 @@ class GraphRun:
         node = self._node
 
         def reason() -> str:
-            return unheard([node.command_publisher, node.result_publisher], listeners())
+            return unmatched([node.command_publisher, node.result_publisher], listeners())
 
         if not await until_true(node, lambda: not reason(), node.timeout_s):
             raise PeerError(f'{reason()} after {node.timeout_s:g} s, expected a running node')

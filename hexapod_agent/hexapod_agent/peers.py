@@ -17,9 +17,7 @@ from hexapod_interfaces.srv import (
     SecureRecording,
     StartRecording,
 )
-from hexapod_node.calls import ServiceUnavailableError, call
-from hexapod_node.conditions import until_true
-from hexapod_node.coroutines import sleep
+from hexapod_node.coroutines import ServiceUnavailableError, call, sleep, until_true
 from hexapod_node.parameters import to_messages
 from hexapod_node.stamps import time_message, to_nanoseconds
 from rcl_interfaces.srv import ListParameters, SetParametersAtomically

@@ -11,8 +11,7 @@ from typing import Any
 
 from hexapod_interfaces.action import TrainRun
 from hexapod_node.actions import ActionClient
-from hexapod_node.conditions import until_true
-from hexapod_node.coroutines import start, until
+from hexapod_node.coroutines import start, until, until_true
 from hexapod_node.diagnostics import Diagnostics
 from hexapod_node.node import Node
 from hexapod_node.parameters import Parameter, declare

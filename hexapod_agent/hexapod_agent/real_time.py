@@ -13,9 +13,7 @@ from typing import TYPE_CHECKING, Any
 from diagnostic_msgs.msg import DiagnosticStatus
 from hexapod_cpg.nodes.messages import command_to_message
 from hexapod_interfaces.msg import CpgCommand
-from hexapod_node.calls import ServiceUnavailableError, call
-from hexapod_node.conditions import until_true
-from hexapod_node.coroutines import sleep
+from hexapod_node.coroutines import ServiceUnavailableError, call, sleep, until_true
 from hexapod_node.invalid_message import InvalidMessageError
 from hexapod_node.newest import Input, NewestSamples
 from hexapod_node.parameters import Parameter, to_messages

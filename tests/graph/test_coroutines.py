@@ -7,8 +7,7 @@ import time
 
 import pytest
 from hexapod_interfaces.srv import ResetEpisode
-from hexapod_node.calls import ServiceUnavailableError, call
-from hexapod_node.coroutines import sleep, start, until
+from hexapod_node.coroutines import ServiceUnavailableError, call, sleep, start, until
 from rclpy.task import Future
 
 pytestmark = pytest.mark.graph

@@ -12,7 +12,7 @@ import pytest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from hexapod_interfaces.action import TrainRun
 from hexapod_node.actions import ActionClient, CoroutineActionServer
-from hexapod_node.coroutine_service import create_coroutine_service
+from hexapod_node.coroutines import create_coroutine_service
 from hexapod_node.diagnostics import Diagnostics
 from hexapod_node.handlers import failures
 from hexapod_node.message_info import NumberedCallback

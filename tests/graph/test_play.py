@@ -15,7 +15,7 @@ from hexapod_agent.training import Trainer
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import EpisodeResult
-from hexapod_node.subscriptions import subscribed_topics
+from hexapod_node.matching import subscribed_topics
 from hexapod_sim.nodes.sim_node import SimNode
 
 from hexapod_agent import checkpoint, evaluate

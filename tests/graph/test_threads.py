@@ -6,8 +6,7 @@
 import threading
 
 import pytest
-from hexapod_node.coroutines import start
-from hexapod_node.threads import in_thread
+from hexapod_node.coroutines import in_thread, start
 
 pytestmark = pytest.mark.graph
 

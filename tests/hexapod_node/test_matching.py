@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 import rclpy
-from hexapod_node.matching import listening_nodes, unheard
+from hexapod_node.matching import count_subscriber_nodes, unmatched
 from hexapod_node.qos import LOCK_STEP
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -49,24 +49,24 @@ def listen(node: Node, qos: QoSProfile = LOCK_STEP) -> None:
 
 def test_a_topic_is_unheard_until_enough_are_matched(node) -> None:
     publisher = node('talker').create_publisher(String, 'topic', LOCK_STEP)
-    assert unheard([publisher], {'/topic': 1}) == '/topic has 0 of 1 subscriptions'
-    assert unheard([publisher], {'/another': 1}) == ''
+    assert unmatched([publisher], {'/topic': 1}) == '/topic has 0 of 1 subscriptions'
+    assert unmatched([publisher], {'/another': 1}) == ''
     listen(node('sim'))
-    until(lambda: unheard([publisher], {'/topic': 1}) == '')
-    assert unheard([publisher], {'/topic': 2}) == '/topic has 1 of 2 subscriptions'
+    until(lambda: unmatched([publisher], {'/topic': 1}) == '')
+    assert unmatched([publisher], {'/topic': 2}) == '/topic has 1 of 2 subscriptions'
 
 
 def test_listeners_are_nodes_and_only_those_that_get_the_samples(node) -> None:
     asking = node('agent')
     node('talker').create_publisher(String, 'topic', LOCK_STEP)
-    assert listening_nodes(asking, '/topic') == 0
+    assert count_subscriber_nodes(asking, '/topic') == 0
     listen(node('sim'))
     listen(node('onlooker'))
-    until(lambda: listening_nodes(asking, '/topic') == 2)
+    until(lambda: count_subscriber_nodes(asking, '/topic') == 2)
     # What wants the samples of the past gets none from a publisher that does not keep them.
     listen(node('late'), LATCHED)
     until(lambda: asking.count_subscribers('/topic') == 3)
-    assert listening_nodes(asking, '/topic') == 2
+    assert count_subscriber_nodes(asking, '/topic') == 2
 
 
 def test_a_node_that_was_started_again_counts_once(node) -> None:
@@ -75,4 +75,4 @@ def test_a_node_that_was_started_again_counts_once(node) -> None:
     for _ in range(2):  # of the same name, as its killed predecessor is known for a while
         listen(node('sim'))
     until(lambda: asking.count_subscribers('/topic') == 2)
-    assert listening_nodes(asking, '/topic') == 1
+    assert count_subscriber_nodes(asking, '/topic') == 1

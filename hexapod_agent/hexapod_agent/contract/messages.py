@@ -9,8 +9,7 @@ import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from hexapod_node.conditions import until_true
-from hexapod_node.coroutines import sleep
+from hexapod_node.coroutines import sleep, until_true
 from hexapod_node.raw_topics import message_class
 from hexapod_node.topic_probe import TopicProbe
 

@@ -15,7 +15,7 @@ from hexapod_interfaces.msg import CpgCommand, CpgState
 from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.intra_process import LockStepPublisher, LockStepSubscription
 from hexapod_node.invalid_message import fault_kind
-from hexapod_node.matching import listeners_of, unheard
+from hexapod_node.matching import listeners_of, unmatched
 from hexapod_node.stamp_gate import DuePeriod
 from hexapod_node.stamps import to_nanoseconds
 from hexapod_sim.robot import CONTROL_PERIOD_NS
@@ -102,7 +102,7 @@ class LockStepCpg:
         """Put the oscillators at the start of the gait and publish their state."""
         response.start = request.start
         listeners = listeners_of(request.topics, request.subscriptions)
-        response.message = unheard([self._trajectory, self._state], listeners)
+        response.message = unmatched([self._trajectory, self._state], listeners)
         if not self._active:
             response.message = 'cpg is not active: expected `ros2 lifecycle set cpg activate`'
         response.success = not response.message

@@ -15,8 +15,7 @@ from hexapod_agent.agent_node import AgentNode
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_node.actions import ActionClient
-from hexapod_node.conditions import until_true
-from hexapod_node.coroutines import start
+from hexapod_node.coroutines import start, until_true
 from hexapod_node.node import Node
 from hexapod_node.root import root_arguments
 from hexapod_node.shared_memory import free_abandoned

@@ -10,8 +10,7 @@ from functools import partial
 from diagnostic_msgs.msg import DiagnosticStatus
 from hexapod_interfaces.msg import EpisodeResult
 from hexapod_interfaces.srv import FinishRecording, RecordEpisode, SecureRecording, StartRecording
-from hexapod_node.conditions import until_true
-from hexapod_node.coroutine_service import create_coroutine_service
+from hexapod_node.coroutines import create_coroutine_service, in_thread, until_true
 from hexapod_node.diagnostics import Diagnostics, Health
 from hexapod_node.node import Node
 from hexapod_node.parameters import Parameter, declare
@@ -20,7 +19,6 @@ from hexapod_node.raw_topics import subscribe_raw
 from hexapod_node.root import ROOT, OutsideRootError, Root
 from hexapod_node.spin import run
 from hexapod_node.stamps import time_message, to_nanoseconds
-from hexapod_node.threads import in_thread
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from rclpy.serialization import deserialize_message
 

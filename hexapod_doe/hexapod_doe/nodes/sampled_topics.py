@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from hexapod_node.conditions import until_true
+from hexapod_node.coroutines import until_true
 from hexapod_node.raw_topics import RawSubscriptions
 
 from hexapod_doe.bags.recording import Recording
@@ -64,9 +64,9 @@ class SampledTopics:
         )
         self._subscriptions.open(publishers)
         if not await until_true(node, lambda: not self._subscriptions.unmatched(), timeout_s):
-            unheard = ', '.join(self._subscriptions.unmatched())
+            unmatched = ', '.join(self._subscriptions.unmatched())
             raise BagError(
-                f'episode {episode}: {unheard} not heard within {timeout_s:g} s, expected a '
+                f'episode {episode}: {unmatched} not heard within {timeout_s:g} s, expected a '
                 'publisher of compatible QoS'
             )
 

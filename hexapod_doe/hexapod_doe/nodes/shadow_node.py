@@ -22,9 +22,8 @@ from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import CpgCommand
 from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.actions import ActionClient
-from hexapod_node.conditions import until_true
-from hexapod_node.coroutines import start, until
-from hexapod_node.matching import listeners_of, unheard
+from hexapod_node.coroutines import start, until, until_true
+from hexapod_node.matching import listeners_of, unmatched
 from hexapod_node.node import Node
 from hexapod_node.qos import LOCK_STEP
 from hexapod_node.raw_topics import message_class
@@ -126,7 +125,7 @@ class ShadowNode(Node):
 
     def _answer(self, request: ResetEpisode.Request, response: ResetEpisode.Response) -> None:
         listeners = listeners_of(request.topics, request.subscriptions)
-        response.message = unheard(self._senders.values(), listeners)
+        response.message = unmatched(self._senders.values(), listeners)
         response.success = not response.message
 
     def _on_command(self, message: CpgCommand) -> None:

@@ -107,7 +107,7 @@ class _Outlet:
     line: SampleLine[Any]
     stale: Time | None = None
     """The stamp that stands still."""
-    unheard: bytes = b''
+    unmatched: bytes = b''
     """The newest message that had no subscription to go to."""
 
 
@@ -171,16 +171,16 @@ class FakeDriverNode(Node):
             outlet.stale = None
         self._published += 1
         if outlet.line.holds and not outlet.publisher.get_subscription_count():
-            outlet.unheard = serialize_message(message)
+            outlet.unmatched = serialize_message(message)
         else:
             outlet.publisher.publish(message)
 
     def _flush(self) -> None:
         """Publish what nobody was there to hear: in lock-step no sample may be lost."""
         for outlet in self._outlets:
-            if outlet.unheard and outlet.publisher.get_subscription_count():
-                outlet.publisher.publish(outlet.unheard)
-                outlet.unheard = b''
+            if outlet.unmatched and outlet.publisher.get_subscription_count():
+                outlet.publisher.publish(outlet.unmatched)
+                outlet.unmatched = b''
 
     def _on_set(self, parameters: list[RclpyParameter]) -> SetParametersResult:
         """Refuse a fault that the channel cannot have."""

@@ -13,7 +13,7 @@ from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.diagnostics import Diagnostics, Health
 from hexapod_node.intra_process import LockStepSubscription
 from hexapod_node.invalid_message import fault_kind
-from hexapod_node.matching import listeners_of, unheard
+from hexapod_node.matching import listeners_of, unmatched
 from hexapod_node.node import Node
 from hexapod_node.parameters import ConfigParameters, Parameter, declare
 from hexapod_node.spin import run
@@ -85,7 +85,7 @@ class SimNode(Node):
         """Put the robot at the seeded start of an episode, a period after the last sample."""
         asked_ns = requested_start_ns(request.start)
         listeners = listeners_of(request.topics, request.subscriptions)
-        response.message = unheard(self._topics.all, listeners)
+        response.message = unmatched(self._topics.all, listeners)
         response.success = not response.message
         if response.success and self._real_time is not None:
             response.start = time_message(self._real_time.reset(request.seed, self._config.get()))

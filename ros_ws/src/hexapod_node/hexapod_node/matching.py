@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Makes sure that whoever must hear a topic does, before the first sample is published."""
+"""Who subscribes to what, as the graph reports it, and whether all are there who must be."""
 
 from __future__ import annotations
 
@@ -11,8 +11,11 @@ from typing import Protocol
 from rclpy.node import Node
 from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible
 
+# Every node of rclpy has this one.
+_OWN = '/parameter_events'
 
-class Heard(Protocol):
+
+class SubscriptionCounter(Protocol):
     """A publisher that tells its topic and how many listen."""
 
     @property
@@ -23,7 +26,7 @@ class Heard(Protocol):
         """Return the number of matched subscriptions."""
 
 
-def unheard(publishers: Iterable[Heard], listeners: Mapping[str, int]) -> str:
+def unmatched(publishers: Iterable[SubscriptionCounter], listeners: Mapping[str, int]) -> str:
     """Say which of these publishers has fewer subscriptions than it must have, or ''.
 
     Args:
@@ -54,11 +57,11 @@ def listeners_of(topics: Sequence[str], subscriptions: Sequence[int]) -> dict[st
     return dict(zip(topics, subscriptions, strict=True))
 
 
-def listening_nodes(node: Node, topic: str) -> int:
+def count_subscriber_nodes(node: Node, topic: str) -> int:
     """Return how many nodes are known to have a subscription that is served by a publisher.
 
     A number of matched subscriptions does not say whose they are. Where strangers listen too,
-    `unheard` is sure of a certain listener only if asked for as many as there are.
+    `unmatched` is sure of a certain listener only if asked for as many as there are.
     Nodes are counted by name, as one that was killed is known for some time beside its successor.
     """
     offers = [publisher.qos_profile for publisher in node.get_publishers_info_by_topic(topic)]
@@ -73,3 +76,22 @@ def listening_nodes(node: Node, topic: str) -> int:
 
 def _served(offered: QoSProfile, requested: QoSProfile) -> bool:
     return qos_check_compatible(offered, requested)[0] != QoSCompatibility.ERROR
+
+
+def subscribed_topics(observer: Node, name: str, namespace: str) -> list[str]:
+    """Return the topics that a node subscribes to, from the endpoints that DDS has discovered.
+
+    Args:
+        observer: Any node of the same domain.
+        name: The node's name.
+        namespace: Its namespace, such as `/worker_1`.
+    """
+    return sorted(
+        topic
+        for topic, _ in observer.get_topic_names_and_types()
+        if topic != _OWN
+        and any(
+            (endpoint.node_name, endpoint.node_namespace) == (name, namespace)
+            for endpoint in observer.get_subscriptions_info_by_topic(topic)
+        )
+    )
