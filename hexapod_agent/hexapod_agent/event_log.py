@@ -84,10 +84,6 @@ def scalars(summary: EpisodeSummary) -> dict[str, float]:
         'return/average': summary.average_return,
         'episode/steps': summary.steps,
         'episode/terminated': float(summary.terminated),
-        'learner/critic_loss': summary.critic_loss,
-        'learner/actor_loss': summary.actor_loss,
-        'learner/mean_q': summary.mean_q,
-        'learner/saturated_share': summary.saturated_share,
-        'learner/updates': summary.updates,
+        **{f'learner/{name}': value for name, value in summary.metrics.items()},
         **{f'term/{name}': value for name, value in summary.terms.items()},
     }

@@ -208,13 +208,10 @@ class GraphRun:
             average_return=summary.average_return,
             term_names=list(summary.terms),
             term_values=array('d', summary.terms.values()),
+            metric_names=list(summary.metrics),
+            metric_values=array('d', summary.metrics.values()),
             terminated=summary.terminated,
             cause=summary.cause,
-            critic_loss=summary.critic_loss,
-            actor_loss=summary.actor_loss,
-            mean_q=summary.mean_q,
-            saturated_share=summary.saturated_share,
-            updates=summary.updates,
             **vars(self._loop.counts),
         )
         result.header.stamp = time_message(last_ns)

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
+from hexapod_agent.metrics import SATURATED_SHARE
 from hexapod_agent.summary import EpisodeSummary
 
 Report = Callable[[EpisodeSummary], None]
@@ -60,5 +61,5 @@ def _lines(name: str, episodes: int) -> Report:
 def _status(summary: EpisodeSummary) -> str:
     return (
         f'return {summary.episode_return:.0f}, mean {summary.average_return:.0f}, '
-        f'saturated {summary.saturated_share:.0%}'
+        f'saturated {summary.metrics[SATURATED_SHARE]:.0%}'
     )

@@ -1,15 +1,18 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a training reports of one episode; the message EpisodeResult has the same fields."""
+"""What a training reports of one episode, and the message EpisodeResult carries."""
 
 import math
 from collections import defaultdict
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from hexapod_sim.task import Outcome
 from numpy.typing import NDArray
+
+from hexapod_agent.metrics import SATURATED_SHARE, UPDATES, in_order
 
 SATURATED = 0.95  # an actor's output beyond this counts as saturated
 
@@ -26,11 +29,8 @@ class EpisodeSummary:
         terms: Sum of each reward term.
         terminated: Whether it ended by a failure.
         cause: Why it ended.
-        critic_loss: Mean over the episode's updates; NaN if there was none. So the next two.
-        actor_loss: Loss of the actor, with its penalty.
-        mean_q: Value that the critic gives to the policy's actions.
-        saturated_share: Share of the actor's outputs beyond +-0.95, noise apart.
-        updates: Gradient steps taken.
+        metrics: What the learner saw, by the names of `metrics.METRICS` and others that it has;
+            means over the episode's updates, NaN if there was none.
     """
 
     episode: int
@@ -40,11 +40,7 @@ class EpisodeSummary:
     terms: dict[str, float]
     terminated: bool
     cause: str
-    critic_loss: float
-    actor_loss: float
-    mean_q: float
-    saturated_share: float
-    updates: int
+    metrics: Mapping[str, float]
 
 
 class EpisodeRecord:
@@ -54,11 +50,12 @@ class EpisodeRecord:
         episode_return: Sum of the rewards so far.
     """
 
-    def __init__(self, episode: int) -> None:
+    def __init__(self, episode: int, names: Iterable[str] = ()) -> None:
+        """Begin an episode, with the names of what its updates report."""
         self._episode = episode
         self.episode_return = 0.0
         self._terms: defaultdict[str, float] = defaultdict(float)
-        self._losses = np.zeros(3)
+        self._updated = defaultdict(float, dict.fromkeys(names, 0.0))
         self._updates = 0
         self._saturated = 0
         self._outputs = 0
@@ -74,14 +71,20 @@ class EpisodeRecord:
         self._saturated += int(np.count_nonzero(np.abs(output) > SATURATED))
         self._outputs += output.size
 
-    def add_update(self, critic_loss: float, actor_loss: float, mean_q: float) -> None:
-        """Count one gradient step."""
-        self._losses += (critic_loss, actor_loss, mean_q)
+    def add_update(self, seen: Mapping[str, float]) -> None:
+        """Count one gradient step, by what it saw."""
+        for name, value in seen.items():
+            self._updated[name] += value
         self._updates += 1
 
     def summarize(self, last: Outcome, average_return: float) -> EpisodeSummary:
         """Close the episode with its last outcome."""
-        losses = self._losses / self._updates if self._updates else np.full(3, math.nan)
+        updates = self._updates or math.nan
+        seen = {name: total / updates for name, total in self._updated.items()}
+        own = {
+            SATURATED_SHARE: self._saturated / max(self._outputs, 1),
+            UPDATES: float(self._updates),
+        }
         return EpisodeSummary(
             episode=self._episode,
             steps=last.step,
@@ -90,9 +93,5 @@ class EpisodeRecord:
             terms=dict(self._terms),
             terminated=last.terminated,
             cause=last.cause,
-            critic_loss=float(losses[0]),
-            actor_loss=float(losses[1]),
-            mean_q=float(losses[2]),
-            saturated_share=self._saturated / max(self._outputs, 1),
-            updates=self._updates,
+            metrics=in_order(seen | own),
         )

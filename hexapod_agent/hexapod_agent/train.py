@@ -78,10 +78,10 @@ def train(
 
 
 def _columns(summary: EpisodeSummary) -> dict[str, Any]:
-    """One row of the log: the summary with its terms spread out."""
+    """One row of the log: the summary with its metrics and terms spread out."""
     columns = dict(vars(summary))
-    terms = columns.pop('terms')
-    return columns | {f'term_{name}': value for name, value in terms.items()}
+    terms, metrics = columns.pop('terms'), columns.pop('metrics')
+    return columns | metrics | {f'term_{name}': value for name, value in terms.items()}
 
 
 def _cut_log(log: Path, episodes: int) -> bool:

@@ -9,6 +9,7 @@ not on who drives or how long anything takes.
 
 import math
 from collections.abc import Mapping
+from dataclasses import fields
 from functools import cached_property
 from typing import Any
 
@@ -19,13 +20,15 @@ from hexapod_sim.robot import CONTROL_PERIOD_NS
 from hexapod_sim.task import Outcome
 from numpy.typing import NDArray
 
-from hexapod_agent.ddpg import Ddpg
+from hexapod_agent.ddpg import Ddpg, UpdateStatistics
 from hexapod_agent.noise import OrnsteinUhlenbeckNoise
 from hexapod_agent.policies import trained_policy
 from hexapod_agent.replay import Batch, ReplayBuffer
 from hexapod_agent.run_spec import ConfigError, RunSpec
 from hexapod_agent.running_scale import RunningScale
 from hexapod_agent.summary import EpisodeRecord, EpisodeSummary
+
+_UPDATE_METRICS = tuple(field.name for field in fields(UpdateStatistics))
 
 
 class TrainingDivergedError(RuntimeError):
@@ -124,7 +127,7 @@ class Trainer:
         """
         if episode != self.episode:
             raise ValueError(f'episode {episode} cannot begin, expected episode {self.episode}')
-        self._record = EpisodeRecord(episode)
+        self._record = EpisodeRecord(episode, _UPDATE_METRICS)
         self.agent.set_rate_share(self.rate_share)
         if self.agent.scale:
             self.agent.scale.refresh()
@@ -184,7 +187,7 @@ class Trainer:
         for name, value in statistics.items():
             if not math.isfinite(value):
                 raise self._diverged(f'the {name} of an update is {value}')
-        self._record.add_update(**statistics)
+        self._record.add_update(statistics)
 
     def end_episode(self, observation: NDArray[np.float32], outcome: Outcome) -> EpisodeSummary:
         """Store the last step and close the episode."""

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import rclpy
+from hexapod_agent.metrics import METRICS
 from hexapod_doe.bags.recording import Recording
 from hexapod_doe.bags.rosbag2 import Topic
 from hexapod_doe.bags.run_bag import EPISODE_RESULT
@@ -56,9 +57,8 @@ def episode_result(episode: int) -> bytes:
         term_names=['forward', 'line', 'height', 'effort', 'alive'],
         term_values=array('d', numbers[2:7]),
         cause='time_limit',
-        critic_loss=numbers[7],
-        actor_loss=numbers[8],
-        mean_q=numbers[9],
+        metric_names=[metric.name for metric in METRICS],
+        metric_values=array('d', numbers[7:12]),
     )
     return serialize_message(message)
 

@@ -103,7 +103,7 @@ def test_a_seed_gives_the_same_weights_on_the_graph_and_in_the_environment(
     for _ in range(3):
         train_episode(env, alone)
     assert alone.summary == trainers[0].summary
-    assert alone.summary.updates > 0
+    assert alone.summary.metrics['updates'] > 0
     assert response.result.final_average_reward == alone.average_return
     on_graph, in_env = (t.state_dict(to_resume=False) for t in (trainers[0], alone))
     assert_same(on_graph, in_env)

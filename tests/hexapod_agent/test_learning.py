@@ -34,4 +34,4 @@ def test_short_training_steers_and_the_constant_action_does_not(name, episodes):
     assert learned.mean_offset < 0.5 * constant.mean_offset
     assert learned.final_average_reward > constant.final_average_reward
     assert learned.falls == 0
-    assert np.mean([summary.saturated_share for summary in summaries[-10:]]) < 0.1
+    assert np.mean([summary.metrics['saturated_share'] for summary in summaries[-10:]]) < 0.1

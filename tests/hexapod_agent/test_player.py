@@ -39,6 +39,6 @@ def test_summary_counts_what_was_earned():
     summary = player.summary
     assert summary.average_return == 4.0  # the last two of three
     assert (summary.episode, summary.steps, summary.terms) == (2, 1, {'alive': 2.0})
-    assert summary.saturated_share == 1.0
-    assert summary.updates == 0
-    assert math.isnan(summary.critic_loss)
+    assert summary.metrics['saturated_share'] == 1.0
+    assert summary.metrics['updates'] == 0
+    assert math.isnan(summary.metrics['critic_loss'])

@@ -12,7 +12,10 @@ from hexapod_agent import progress
 
 def summary(episode: int) -> SimpleNamespace:
     return SimpleNamespace(
-        episode=episode, episode_return=100.0 + episode, average_return=50.0, saturated_share=0.25
+        episode=episode,
+        episode_return=100.0 + episode,
+        average_return=50.0,
+        metrics={'saturated_share': 0.25},
     )
 
 

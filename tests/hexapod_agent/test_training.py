@@ -42,13 +42,13 @@ def test_summary_adds_up(make_trainer):
     assert (summary.episode, summary.steps, summary.episode_return) == (0, 3, 6.0)
     assert summary.terms == {'velocity': 1.5, 'alive': 4.5}
     assert (summary.terminated, summary.cause) == (True, 'flipped')
-    assert summary.updates == 0
-    assert np.isnan(summary.critic_loss)
+    assert summary.metrics['updates'] == 0
+    assert np.isnan(summary.metrics['critic_loss'])
     play(trainer, [1.0] * 30)
     # A batch is 16: of the groups of 8 after steps 8, 16 and 24 the first finds 3 + 7 transitions.
-    assert trainer.summary.updates == 16
+    assert trainer.summary.metrics['updates'] == 16
     assert trainer.summary.average_return == trainer.average_return == (6.0 + 30.0) / 2
-    assert np.isfinite(trainer.summary.critic_loss)
+    assert np.isfinite(trainer.summary.metrics['critic_loss'])
 
 
 @pytest.mark.parametrize(

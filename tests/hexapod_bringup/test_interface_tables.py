@@ -6,7 +6,13 @@
 from pathlib import Path
 
 import pytest
-from hexapod_bringup.interface_tables import SAMPLE_BAG, node_tables, replace, sensor_table
+from hexapod_bringup.interface_tables import (
+    SAMPLE_BAG,
+    metric_table,
+    node_tables,
+    replace,
+    sensor_table,
+)
 
 ROOT = Path(__file__).resolve().parents[2]
 CURE = 'run `python -m hexapod_bringup.interface_tables README.md`'
@@ -19,6 +25,11 @@ def readme() -> str:
 
 def test_the_sensor_table_is_that_of_the_code(readme: str) -> None:
     assert replace(readme, 'sensors', sensor_table()) == readme, CURE
+
+
+def test_the_metric_table_is_that_of_the_code() -> None:
+    page = (ROOT / 'bags' / 'README.md').read_text(encoding='utf-8')
+    assert replace(page, 'metrics', metric_table()) == page, CURE
 
 
 @pytest.mark.graph

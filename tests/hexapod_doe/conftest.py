@@ -38,7 +38,8 @@ def serialised_result(episode: int, run_id: str = 'r1', gain: float = 1.0) -> by
         term_names=['progress', 'effort'],
         term_values=array('d', [10.0 * episode + 1.0, -1.0]),
         cause='time limit',
-        critic_loss=float('nan'),
+        metric_names=['critic_loss', 'entropy'],
+        metric_values=array('d', [float('nan'), 1.5]),
     )
     message.header.stamp.sec = 15 * (episode + 1)
     return serialize_message(message)

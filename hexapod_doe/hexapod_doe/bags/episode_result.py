@@ -32,9 +32,12 @@ def serialise(run_id: str, summary: EpisodeSummary, stamp_ns: int) -> bytes:
     """
     sec, nanosec = divmod(stamp_ns, _NANOSECONDS)
     fields = dict(vars(summary))
-    terms = fields.pop('terms')
+    terms, metrics = fields.pop('terms'), fields.pop('metrics')
     header = {'stamp': {'sec': sec, 'nanosec': nanosec}, 'frame_id': ''}
-    own = {'term_names': list(terms), 'term_values': list(terms.values())}
+    own = {
+        'term_names': list(terms), 'term_values': list(terms.values()),
+        'metric_names': list(metrics), 'metric_values': list(metrics.values()),
+    }  # fmt: skip
     return _encoder()({'header': header, 'run_id': run_id, **fields, **own, **_NO_FAULTS})
 
 

@@ -12,6 +12,7 @@ from typing import Any
 
 import pandas as pd
 
+from hexapod_agent import metrics
 from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.bags.bag_state import find_bags, is_complete
 from hexapod_doe.bags.run_bag import EPISODE_RESULT
@@ -19,18 +20,13 @@ from hexapod_doe.errors import BagError
 
 __all__ = ['RunRecord', 'find_bags', 'is_complete', 'read_run', 'read_topic']
 
-_SCALARS = (
+_FIELDS = (
     'episode',
     'steps',
     'episode_return',
     'average_return',
     'terminated',
     'cause',
-    'critic_loss',
-    'actor_loss',
-    'mean_q',
-    'saturated_share',
-    'updates',
     'late',
     'missing',
     'duplicate',
@@ -46,7 +42,8 @@ class RunRecord:
     metadata: dict[str, str]
     """Design row, seed, parameters, versions, and what the recorder found."""
     episodes: pd.DataFrame
-    """A row per episode, by its number: the fields of EpisodeResult, reward terms as `term_*`."""
+    """A row per episode, by its number: the fields of EpisodeResult, reward terms as `term_*`,
+    and the learner's metrics by their names."""
 
 
 def read_run(bag: str | Path) -> RunRecord:
@@ -81,11 +78,19 @@ def read_topic(bag: str | Path, topic: str, kind: str = '') -> Iterator[tuple[in
 
 
 def _episode_row(result: Any) -> dict[str, Any]:
-    row = {name: getattr(result, name) for name in _SCALARS}
-    terms = zip(result.term_names, result.term_values, strict=True)
     stamp = result.header.stamp
+    terms = zip(result.term_names, result.term_values, strict=True)
     return (
-        row
+        _metrics(result)
+        | {name: getattr(result, name) for name in _FIELDS}
         | {f'term_{name}': value for name, value in terms}
         | {'stamp_ns': stamp.sec * 1_000_000_000 + stamp.nanosec}
     )
+
+
+def _metrics(result: Any) -> dict[str, float]:
+    """Return the learner's metrics by name; bags of before have them as fields of the message."""
+    if hasattr(result, 'metric_names'):
+        return dict(zip(result.metric_names, result.metric_values, strict=True))
+    names = (metric.name for metric in metrics.METRICS)
+    return {name: float(getattr(result, name)) for name in names if hasattr(result, name)}

@@ -5,10 +5,11 @@
 
 import pandas as pd
 
+from hexapod_agent import metrics
 from hexapod_doe.records.results import Analysis
 from hexapod_doe.reporting.tables import Table
 
-METRICS = {
+_OF_AN_EPISODE = {
     'episode_return': 'sum of the rewards of an episode, exploration noise included',
     'average_return': 'mean of the last returns, over at most `training.window` episodes',
     'final_average_reward': 'average_return after the last episode: the response of a run',
@@ -19,24 +20,25 @@ METRICS = {
     'term_orientation': 'cost of roll, of pitch and of yaw against the line',
     'term_height': 'cost of leaving the walking height',
     'term_alive': 'constant of every step',
-    'critic_loss': 'mean squared error of the value against its target, over the updates',
-    'actor_loss': 'what the actor minimises, over the updates',
-    'mean_q': 'value that the critic gives the actor’s own actions, over the updates',
-    'saturated_share': 'share of the actor’s outputs beyond 0.95 of their range',
-    'updates': 'gradient steps of the episode',
     'late, missing, duplicate, out_of_order': 'departures from lock-step: 0 in a healthy run',
 }
-"""Name in a bag -> its meaning."""
+
+
+def meanings() -> dict[str, str]:
+    """Return the meaning of what a bag has of an episode, by name; the learner's metrics last."""
+    return _OF_AN_EPISODE | {
+        metric.name: metric.meaning + (f', in {metric.unit}' if metric.unit != '1' else '')
+        for metric in metrics.METRICS
+    }
 
 
 def glossary(analysis: Analysis) -> Table | None:
     """Tabulate the meanings, where the runs come from bags."""
     if analysis.curves.empty:
         return None
-    data = pd.DataFrame({'name': list(METRICS), 'meaning': list(METRICS.values())})
-    cells = {'name': list(METRICS), 'meaning': list(METRICS.values())}
+    cells = {'name': list(meanings()), 'meaning': list(meanings().values())}
     return Table(
         'glossary', 'What the figures of a training mean',
         'Names as in the bags. Terms are sums over an episode; they add up to its return.',
-        cells, data,
+        cells, pd.DataFrame(cells),
     )  # fmt: skip

@@ -49,7 +49,7 @@ def test_runs_equal_those_trained_alone_to_the_last_bit(
     for run, (letters, seed) in zip(fleet, RUNS, strict=True):
         alone = train_alone(new_run(full_config, letters, seed))
         assert run.end == 'ended'
-        assert run.summaries[-1].updates > 0
+        assert run.summaries[-1].metrics['updates'] > 0
         assert_same_results(run, alone)
         assert_same_state(run, alone)
 
@@ -66,7 +66,7 @@ def test_a_stack_learns_what_its_runs_learn_alone(
         # Sums are rounded otherwise, and small differences grow from step to step.
         for ours, theirs in zip(run.summaries, alone.summaries, strict=True):
             assert ours.episode_return == pytest.approx(theirs.episode_return, rel=1e-3)
-            assert ours.updates == theirs.updates
+            assert ours.metrics['updates'] == theirs.metrics['updates']
         for name, array in alone.trainer.agent.actor_parameters.arrays.items():
             ours = run.trainer.agent.actor_parameters.arrays[name]
             torch.testing.assert_close(ours, array, rtol=1e-2, atol=1e-3)

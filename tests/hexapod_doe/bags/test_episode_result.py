@@ -21,11 +21,12 @@ def test_ros_reads_what_it_would_have_sent(length, terms):
 
     summary = EpisodeSummary(
         episode=7, steps=600, episode_return=1 / 3, average_return=-2.5, terms=terms,
-        terminated=True, cause='x' * length, critic_loss=math.nan, actor_loss=0.5, mean_q=530.0,
-        saturated_share=0.125, updates=600,
+        terminated=True, cause='x' * length, metrics={'critic_loss': math.nan, 'mean_q': 530.0},
     )  # fmt: skip
-    fields = vars(summary) | {'term_names': list(terms), 'term_values': array('d', terms.values())}
-    del fields['terms']
+    fields = dict(vars(summary))
+    for one in ('term', 'metric'):
+        values = fields.pop(f'{one}s')
+        fields |= {f'{one}_names': list(values), f'{one}_values': array('d', values.values())}
     message = EpisodeResult(run_id='r' * length, **fields)
     message.header.stamp.sec, message.header.stamp.nanosec = 15, 25_000_000
     data = serialise('r' * length, summary, 15_025_000_000)

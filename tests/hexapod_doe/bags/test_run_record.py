@@ -27,6 +27,7 @@ def test_run_comes_back(write_bag):
     assert list(episodes['term_progress']) == [1.0, 11.0, 21.0]
     assert list(episodes['stamp_ns']) == [15_000_000_000, 30_000_000_000, 45_000_000_000]
     assert math.isnan(episodes['critic_loss'][0])
+    assert list(episodes['entropy']) == [1.5] * 3  # a name of the learner's own
     assert list(episodes['cause']) == ['time limit'] * 3
 
 

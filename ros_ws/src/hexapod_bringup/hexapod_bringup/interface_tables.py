@@ -1,10 +1,10 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Writes the interface tables of the README from the running nodes and the sensor table.
+"""Writes the tables of the README, and of bags/README.md, from running nodes and code's tables.
 
 `python -m hexapod_bringup.interface_tables README.md` replaces what stands between the markers; a
-test holds the README to it.
+test holds both pages to it.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.utilities import try_shutdown
 
-from hexapod_agent import checkpoint
+from hexapod_agent import checkpoint, metrics
 from hexapod_bringup.description_node import DescriptionNode
 
 SAMPLE_BAG = 'bags/sample'
@@ -92,6 +92,12 @@ def sensor_table() -> str:
     ]
     head = ('letter', 'channel', 'numbers', 'topic', 'type', 'unit', 'scale', 'device')
     return _markdown(head, rows)
+
+
+def metric_table() -> str:
+    """Return the table of the learner's metrics as Markdown."""
+    rows = [(f'`{metric.name}`', metric.unit, metric.meaning) for metric in metrics.METRICS]
+    return _markdown(('metric', 'unit', 'meaning'), rows)
 
 
 def node_tables(bag: Path) -> str:
@@ -209,13 +215,16 @@ def _markdown(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Write both kinds of tables into a file."""
+    """Write all tables into their pages."""
     parser = CommandLine(description=__doc__)
     parser.add_argument('readme', type=file)
     path = parser.parse_args(arguments).readme
     text = replace(path.read_text(encoding='utf-8'), 'sensors', sensor_table())
     nodes = node_tables(path.resolve().parent / SAMPLE_BAG)
     path.write_text(replace(text, 'interfaces', nodes), encoding='utf-8')
+    bags = path.parent / 'bags' / path.name
+    text = replace(bags.read_text(encoding='utf-8'), 'metrics', metric_table())
+    bags.write_text(text, encoding='utf-8')
 
 
 if __name__ == '__main__':

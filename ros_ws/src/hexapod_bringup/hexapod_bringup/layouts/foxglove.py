@@ -10,7 +10,7 @@ from typing import Any
 
 from hexapod_sim.robot import BASE_FRAME, JOINTS, ODOM_FRAME
 
-from hexapod_bringup.layouts.plots import TABS, Curve, Plot, prefix
+from hexapod_bringup.layouts.plots import Curve, Plot, prefix, tabs
 
 Json = dict[str, Any]
 
@@ -19,12 +19,12 @@ def foxglove(namespace: str) -> str:
     """Return the layout as JSON, for the nodes of a namespace."""
     start = prefix(namespace)
     panels: Json = {'3D!robot': _scene(start), 'DiagnosticSummary!health': _health()}
-    tabs = []
-    for name, plots in TABS.items():
+    shown = []
+    for name, plots in tabs().items():
         keys = [f'Plot!{name}{number}' for number in range(len(plots))]
         panels |= {key: _plot(plot, start) for key, plot in zip(keys, plots, strict=True)}
-        tabs.append({'title': name, 'layout': _stacked(keys)})
-    panels['Tab!plots'] = {'activeTabIdx': 0, 'tabs': tabs}
+        shown.append({'title': name, 'layout': _stacked(keys)})
+    panels['Tab!plots'] = {'activeTabIdx': 0, 'tabs': shown}
     left = _split('3D!robot', 'DiagnosticSummary!health', 'column', 75)
     layout = {
         'configById': panels,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from xml.etree import ElementTree
 
-from hexapod_bringup.layouts.plots import TABS, Curve, Plot, prefix
+from hexapod_bringup.layouts.plots import Curve, Plot, prefix, tabs
 
 _COLOURS = ('#1f77b4', '#d62728', '#2ca02c', '#ff7f0e', '#9467bd', '#17becf')
 
@@ -16,9 +16,9 @@ def plotjuggler(namespace: str) -> str:
     """Return the layout as XML, for the nodes of a namespace."""
     root = ElementTree.Element('root')
     window = {'parent': 'main_window', 'name': 'Main Window'}
-    tabs = ElementTree.SubElement(root, 'tabbed_widget', window)
-    for name, plots in TABS.items():
-        tab = ElementTree.SubElement(tabs, 'Tab', tab_name=name, containers='1')
+    widget = ElementTree.SubElement(root, 'tabbed_widget', window)
+    for name, plots in tabs().items():
+        tab = ElementTree.SubElement(widget, 'Tab', tab_name=name, containers='1')
         container = ElementTree.SubElement(tab, 'Container')
         sizes = ';'.join([f'{1 / len(plots):.6f}'] * len(plots))
         splitter = ElementTree.SubElement(
@@ -26,7 +26,7 @@ def plotjuggler(namespace: str) -> str:
         )
         for plot in plots:
             _add_plot(splitter, plot, prefix(namespace))
-    ElementTree.SubElement(tabs, 'currentTabIndex', index='0')
+    ElementTree.SubElement(widget, 'currentTabIndex', index='0')
     ElementTree.SubElement(root, 'use_relative_time_offset', enabled='1')
     ElementTree.indent(root)
     text = ElementTree.tostring(root, encoding='unicode')

@@ -5,9 +5,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from hexapod_sim.robot import LEG_JOINTS, LEGS
+
+from hexapod_agent import metrics
 
 
 @dataclass(frozen=True)
@@ -45,7 +48,7 @@ def _joints(joint: str) -> tuple[Curve, ...]:
     return tuple(Curve('joint_states', leg, 'position', joint=f'{leg}_{joint}') for leg in LEGS)
 
 
-TABS: dict[str, tuple[Plot, ...]] = {
+_TABS: dict[str, tuple[Plot, ...]] = {
     'task': (
         Plot('offset from the line (m)', (Curve('line_offset', 'offset', 'offset'),)),
         Plot('reward', (Curve('step_outcome', 'reward', 'reward'),)),
@@ -73,9 +76,22 @@ TABS: dict[str, tuple[Plot, ...]] = {
                 Curve('episode_result', 'average', 'average_return'),
             ),
         ),
-        Plot('mean Q', (Curve('episode_result', 'mean Q', 'mean_q'),)),
     ),
 }
+
+
+def tabs() -> dict[str, tuple[Plot, ...]]:
+    """Return the plots by tab, those of the learner's metrics among them."""
+    return _TABS | {'learning': (*_TABS['learning'], *_metric_plots())}
+
+
+def _metric_plots() -> Iterator[Plot]:
+    curves: dict[str, list[Curve]] = {}
+    for index, metric in enumerate(metrics.METRICS):
+        if metric.plot:
+            curve = Curve('episode_result', metric.name, 'metric_values', index)
+            curves.setdefault(metric.plot, []).append(curve)
+    return (Plot(title, tuple(of_plot)) for title, of_plot in curves.items())
 
 
 def prefix(namespace: str) -> str:
