@@ -8,12 +8,12 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
-from hexapod_agent.env import HexapodLine
-from hexapod_agent.evaluation import run_episode, summarize
-from hexapod_agent.policies import random_policy
-from hexapod_agent.run_spec import RunSpec
+from hexapod_agent.deployment.policies import random_policy
+from hexapod_agent.environment.env import HexapodLine
+from hexapod_agent.environment.evaluation import run_episode, summarize
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_agent.train import train_episode
-from hexapod_agent.training import Trainer
 from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.choosing.devices import read_devices
 from hexapod_doe.replays.rescoring import recorded_config, rescore

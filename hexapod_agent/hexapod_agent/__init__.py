@@ -5,4 +5,4 @@
 
 import gymnasium
 
-gymnasium.register(id='HexapodLine-v0', entry_point='hexapod_agent.env:HexapodLine')
+gymnasium.register(id='HexapodLine-v0', entry_point='hexapod_agent.environment.env:HexapodLine')

@@ -17,12 +17,23 @@ from rich.console import Console
 from rich.progress import Progress, track
 from rich.table import Table
 
-from hexapod_agent import checkpoint
-from hexapod_agent.constant_action import GENERATIONS, best_constant_action
-from hexapod_agent.env import HexapodLine
-from hexapod_agent.evaluation import Episode, Evaluation, GraphError, run_episode, summarize
-from hexapod_agent.policies import Policy, constant_policy, random_policy, trained_policy
-from hexapod_agent.run_spec import ConfigError, RunSpec, add_spec_options
+from hexapod_agent.deployment.policies import (
+    Policy,
+    constant_policy,
+    random_policy,
+    trained_policy,
+)
+from hexapod_agent.environment.constant_action import GENERATIONS, best_constant_action
+from hexapod_agent.environment.env import HexapodLine
+from hexapod_agent.environment.evaluation import (
+    Episode,
+    Evaluation,
+    GraphError,
+    run_episode,
+    summarize,
+)
+from hexapod_agent.learning import checkpoint
+from hexapod_agent.specification.run_spec import ConfigError, RunSpec, add_spec_options
 
 _ROWS = (
     ('final average reward', 'final_average_reward', '.1f'),
@@ -122,7 +133,7 @@ def _in_environment(
 
 def _on_graph(options: argparse.Namespace) -> Iterator[Episode]:
     # Only here: without --graph, evaluating needs no ROS.
-    from hexapod_agent.evaluate_node import episodes_on_graph
+    from hexapod_agent.nodes.evaluate_node import episodes_on_graph
 
     return episodes_on_graph(options.checkpoint, options.starts, options.seed)
 

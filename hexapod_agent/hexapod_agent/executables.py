@@ -5,5 +5,5 @@
 
 from hexapod_node.executable import executable
 
-agent_node = executable('hexapod_agent.agent_node')
-play_node = executable('hexapod_agent.play_node')
+agent_node = executable('hexapod_agent.nodes.agent_node')
+play_node = executable('hexapod_agent.nodes.play_node')

@@ -20,11 +20,11 @@ from hexapod_sim.sensor_table import PREVIOUS_ACTION
 from numpy.typing import NDArray
 from onnx import TensorProto, helper, numpy_helper
 
-from hexapod_agent import checkpoint
-from hexapod_agent.layers import NORM_EPSILON
-from hexapod_agent.observation import ObservationSpec
-from hexapod_agent.running_scale import LIMIT
-from hexapod_agent.training import Trainer
+from hexapod_agent.algorithms.ddpg.layers import NORM_EPSILON
+from hexapod_agent.algorithms.ddpg.running_scale import LIMIT
+from hexapod_agent.learning import checkpoint
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.specification.observation import ObservationSpec
 
 _OPSET = 17
 _IR_VERSION = 8  # the opset's own; newer ones shut out older runtimes

@@ -23,10 +23,10 @@ from hexapod_sim.film import (
 )
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 
-from hexapod_agent import checkpoint
-from hexapod_agent.env import HexapodLine
-from hexapod_agent.policies import Policy, constant_policy, trained_policy
-from hexapod_agent.run_spec import ConfigError, RunSpec
+from hexapod_agent.deployment.policies import Policy, constant_policy, trained_policy
+from hexapod_agent.environment.env import HexapodLine
+from hexapod_agent.learning import checkpoint
+from hexapod_agent.specification.run_spec import ConfigError, RunSpec
 
 _PERIODS_PER_FRAME = 2
 FRAMES_PER_SECOND = 1_000_000_000 // (CONTROL_PERIOD_NS * _PERIODS_PER_FRAME)

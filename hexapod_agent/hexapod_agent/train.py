@@ -13,14 +13,14 @@ from typing import Any
 
 from hexapod_sim.command_line import MOST_EPISODES, MOST_SEED, CommandLine, folder, whole
 
-from hexapod_agent import checkpoint
-from hexapod_agent.env import HexapodLine
-from hexapod_agent.event_log import EventLog
-from hexapod_agent.progress import Report, episode_report
-from hexapod_agent.run_checkpoint import different, listed
-from hexapod_agent.run_spec import ConfigError, RunSpec, add_spec_options
-from hexapod_agent.summary import EpisodeSummary
-from hexapod_agent.training import Trainer, TrainingDivergedError
+from hexapod_agent.environment.env import HexapodLine
+from hexapod_agent.learning import checkpoint
+from hexapod_agent.learning.event_log import EventLog
+from hexapod_agent.learning.progress import Report, episode_report
+from hexapod_agent.learning.run_checkpoint import different, listed
+from hexapod_agent.learning.summary import EpisodeSummary
+from hexapod_agent.learning.training import Trainer, TrainingDivergedError
+from hexapod_agent.specification.run_spec import ConfigError, RunSpec, add_spec_options
 
 CHECKPOINT = 'checkpoint.pt'  # with the replay buffer: to resume
 AGENT = 'agent.pt'  # the actor alone: to evaluate and to keep

@@ -11,7 +11,7 @@ from pathlib import Path
 from statistics import mean
 from typing import Any
 
-from hexapod_agent.run_spec import ConfigError
+from hexapod_agent.specification.run_spec import ConfigError
 from hexapod_sim.command_line import CommandLine, file, one_line, output_file, path
 from hexapod_sim.task import TERM_NAMES
 from rich.console import Console

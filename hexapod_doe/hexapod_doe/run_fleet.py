@@ -20,8 +20,8 @@ from hexapod_agent.fleet.fleet import Fleet
 from hexapod_agent.fleet.learners import Learners, SeparateLearners
 from hexapod_agent.fleet.robots import Robots
 from hexapod_agent.fleet.stacked import StackedLearners
-from hexapod_agent.observation import ObservationSpec
-from hexapod_agent.run_spec import RunSpec, add_spec_options
+from hexapod_agent.specification.observation import ObservationSpec
+from hexapod_agent.specification.run_spec import RunSpec, add_spec_options
 from hexapod_sim.command_line import CommandLine, file, folder, one_line, whole
 
 from hexapod_doe.bags.run_identity import EPISODES

@@ -11,8 +11,8 @@ import sys
 from collections.abc import Sequence
 from dataclasses import asdict
 
-from hexapod_agent.checkpoint import CheckpointError, load
-from hexapod_agent.policies import trained_policy
+from hexapod_agent.deployment.policies import trained_policy
+from hexapod_agent.learning.checkpoint import CheckpointError, load
 from hexapod_sim.command_line import CommandLine, file, one_line, output_file, path, whole
 from rich.console import Console
 from rich.table import Table

@@ -19,10 +19,10 @@ import time
 from pathlib import Path
 
 import torch
-from hexapod_agent.observation import ObservationSpec
-from hexapod_agent.replay import Batch
-from hexapod_agent.run_spec import RunSpec
-from hexapod_agent.training import Trainer
+from hexapod_agent.algorithms.replay import Batch
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.specification.observation import ObservationSpec
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_cpg.mapping import ACTION_SIZE
 from hexapod_doe.campaigns.folder import read_progress
 from hexapod_doe.campaigns.progress import State

@@ -30,13 +30,13 @@ from pathlib import Path
 
 import yaml
 from bench_graph import Client
-from hexapod_agent.env import HexapodLine
+from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.fleet.crew import Crew
 from hexapod_agent.fleet.stopwatch import Stopwatch
-from hexapod_agent.run_spec import RunSpec
-from hexapod_agent.summary import EpisodeSummary
+from hexapod_agent.learning.summary import EpisodeSummary
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_agent.train import train_episode
-from hexapod_agent.training import Trainer
 from hexapod_doe.run_fleet import build_fleet
 from hexapod_interfaces.action import TrainRun
 from rclpy.action import ActionClient

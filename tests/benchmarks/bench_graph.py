@@ -17,8 +17,8 @@ from pathlib import Path
 
 import numpy as np
 import rclpy
-from hexapod_agent.env import HexapodLine
-from hexapod_agent.run_spec import RunSpec
+from hexapod_agent.environment.env import HexapodLine
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_cpg.mapping import ACTION_SIZE
 from hexapod_interfaces.action import TrainRun
 from rclpy.action import ActionClient

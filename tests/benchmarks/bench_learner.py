@@ -14,9 +14,9 @@ from collections.abc import Callable
 
 import numpy as np
 import torch
-from hexapod_agent.env import HexapodLine
-from hexapod_agent.run_spec import RunSpec
-from hexapod_agent.training import Trainer
+from hexapod_agent.environment.env import HexapodLine
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_cpg.mapping import ACTION_SIZE
 from rich.console import Console
 from rich.table import Table

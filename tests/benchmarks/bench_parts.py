@@ -25,7 +25,7 @@ os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'OFF'
 os.environ.setdefault('OMP_NUM_THREADS', '1')
 
 import rclpy
-from hexapod_agent.training import Trainer
+from hexapod_agent.learning.training import Trainer
 from hexapod_bringup.worker_node import make_worker
 from hexapod_cpg.locomotion import Locomotion
 from hexapod_interfaces.action import TrainRun

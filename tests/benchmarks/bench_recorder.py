@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import rclpy
-from hexapod_agent.metrics import METRICS
+from hexapod_agent.learning.metrics import METRICS
 from hexapod_doe.bags.recording import Recording
 from hexapod_doe.bags.rosbag2 import Topic
 from hexapod_doe.bags.run_bag import EPISODE_RESULT

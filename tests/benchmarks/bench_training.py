@@ -16,7 +16,7 @@ os.environ['OMP_NUM_THREADS'] = '1'
 import time
 
 import rclpy
-from hexapod_agent.training import Trainer
+from hexapod_agent.learning.training import Trainer
 from hexapod_bringup.worker_node import make_worker
 from hexapod_interfaces.action import TrainRun
 from rclpy.action import ActionClient

@@ -6,17 +6,18 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from importlib.resources import files
 
 import pytest
 import torch
 import yaml
-from hexapod_agent.agent_node import AgentNode
-from hexapod_agent.env import HexapodLine
-from hexapod_agent.observation import ObservationSpec
-from hexapod_agent.run_spec import RunSpec
+from hexapod_agent.environment.env import HexapodLine
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.nodes.agent_node import AgentNode
+from hexapod_agent.specification.observation import ObservationSpec
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_agent.train import train_episode
-from hexapod_agent.training import Trainer
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import EpisodeResult
@@ -216,7 +217,7 @@ def test_a_wrong_message_ends_the_run_by_name(graph, short, topic, spoil, compla
 
 def test_a_silent_topic_ends_the_run_by_name(graph, short: str) -> None:
     agent = AgentNode()
-    agent.timeout_s = 1.0
+    agent._run_context = replace(agent._run_context, timeout_s=1.0)
     sim = SimNode()
     graph.add(sim, CpgNode(), agent)
     for publisher in sim._topics.all:

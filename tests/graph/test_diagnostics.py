@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray
-from hexapod_agent.agent_node import AgentNode
+from hexapod_agent.nodes.agent_node import AgentNode
 from hexapod_bringup.description_node import DescriptionNode
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_doe.nodes.player_node import PlayerNode

@@ -6,8 +6,8 @@
 from __future__ import annotations
 
 import pytest
-from hexapod_agent.evaluate_node import EvaluationNode
-from hexapod_agent.evaluation import GraphError
+from hexapod_agent.environment.evaluation import GraphError
+from hexapod_agent.nodes.evaluate_node import EvaluationNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_node.coroutines import start
 from hexapod_sim.nodes.sim_node import SimNode

@@ -6,11 +6,11 @@
 from __future__ import annotations
 
 import pytest
-from hexapod_agent.agent_node import AgentNode
-from hexapod_agent.env import HexapodLine
-from hexapod_agent.run_spec import RunSpec
+from hexapod_agent.environment.env import HexapodLine
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.nodes.agent_node import AgentNode
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_agent.train import train_episode
-from hexapod_agent.training import Trainer
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import EpisodeResult

@@ -11,11 +11,11 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from hexapod_agent.agent_node import AgentNode
 from hexapod_agent.fleet.crew import Crew
-from hexapod_agent.run_checkpoint import checkpoint_path
-from hexapod_agent.run_spec import RunSpec
-from hexapod_agent.training import Trainer, TrainingDivergedError
+from hexapod_agent.learning.run_checkpoint import checkpoint_path
+from hexapod_agent.learning.training import Trainer, TrainingDivergedError
+from hexapod_agent.nodes.agent_node import AgentNode
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_doe.bags.run_record import read_run
 from hexapod_doe.bags.verify import verify

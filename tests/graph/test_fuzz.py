@@ -14,10 +14,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hexapod_agent.agent_node import AgentNode
-from hexapod_agent.play_node import PlayNode
-from hexapod_agent.run_spec import RunSpec
-from hexapod_agent.training import Trainer
+from hexapod_agent.learning import checkpoint
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.nodes import real_time
+from hexapod_agent.nodes.agent_node import AgentNode
+from hexapod_agent.nodes.play_node import PlayNode
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_cpg.mapping import ActionRanges, command_from_action
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_cpg.nodes.messages import OutputMessages, command_to_message
@@ -32,7 +34,6 @@ from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from trajectory_msgs.msg import JointTrajectory
 
-from hexapod_agent import checkpoint, real_time
 from hexapod_sim import robot
 
 RANGES = ActionRanges.of_article()

@@ -14,8 +14,8 @@ from contextlib import contextmanager
 import gymnasium
 import numpy as np
 import pytest
-from hexapod_agent.agent_node import AgentNode
-from hexapod_agent.training import Trainer
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.nodes.agent_node import AgentNode
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_sim.nodes.sim_node import SimNode

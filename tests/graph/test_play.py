@@ -8,17 +8,18 @@ from __future__ import annotations
 import json
 
 import pytest
-from hexapod_agent.agent_node import AgentNode
-from hexapod_agent.env import HexapodLine
-from hexapod_agent.run_spec import RunSpec
-from hexapod_agent.training import Trainer
+from hexapod_agent.environment.env import HexapodLine
+from hexapod_agent.learning import checkpoint
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.nodes.agent_node import AgentNode
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import EpisodeResult
 from hexapod_node.matching import subscribed_topics
 from hexapod_sim.nodes.sim_node import SimNode
 
-from hexapod_agent import checkpoint, evaluate
+from hexapod_agent import evaluate
 
 pytestmark = pytest.mark.graph
 SMALL = {

@@ -10,9 +10,11 @@ import time
 import numpy as np
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray
-from hexapod_agent.play_node import PlayNode
-from hexapod_agent.run_spec import RunSpec
-from hexapod_agent.training import Trainer
+from hexapod_agent.learning import checkpoint
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.nodes import real_time
+from hexapod_agent.nodes.play_node import PlayNode
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_cpg.locomotion import Motion
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_node.stamps import to_nanoseconds
@@ -23,7 +25,6 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
 
-from hexapod_agent import checkpoint, real_time
 from hexapod_sim import robot
 
 pytestmark = pytest.mark.graph

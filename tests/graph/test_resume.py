@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from hexapod_agent.agent_node import AgentNode
-from hexapod_agent.run_checkpoint import checkpoint_path
-from hexapod_agent.training import Trainer
+from hexapod_agent.learning.run_checkpoint import checkpoint_path
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.nodes.agent_node import AgentNode
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_doe.bags.bag_state import is_complete
 from hexapod_doe.bags.run_record import read_run, read_topic
@@ -83,7 +83,7 @@ class Worker:
 def worker(graph, monkeypatch) -> Worker:
     made = Worker(graph)
     # A trainer that comes from a checkpoint is watched as well.
-    monkeypatch.setattr('hexapod_agent.checkpoint.Trainer', made._make_trainer)
+    monkeypatch.setattr('hexapod_agent.learning.checkpoint.Trainer', made._make_trainer)
     return made
 
 
@@ -173,7 +173,8 @@ def test_a_checkpoint_is_taken_after_its_episodes_are_on_the_disk(
         'hexapod_doe.bags.bag_writer.os.fsync', lambda descriptor: order.append('disk')
     )
     monkeypatch.setattr(
-        'hexapod_agent.run_checkpoint.keep', lambda bag, trainer: order.append('checkpoint')
+        'hexapod_agent.learning.run_checkpoint.keep',
+        lambda bag, trainer: order.append('checkpoint'),
     )
     assert train(graph, goal('r')) == ''
     first = order.index('checkpoint')

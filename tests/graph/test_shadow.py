@@ -12,11 +12,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hexapod_agent.agent_node import AgentNode
-from hexapod_agent.observation import ObservationSpec
-from hexapod_agent.policies import trained_policy
-from hexapod_agent.run_spec import RunSpec
-from hexapod_agent.training import Trainer
+from hexapod_agent.deployment.policies import trained_policy
+from hexapod_agent.learning import checkpoint
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.nodes.agent_node import AgentNode
+from hexapod_agent.specification.observation import ObservationSpec
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.errors import BagError
@@ -29,8 +30,6 @@ from hexapod_interfaces.action import TrainRun
 from hexapod_node.coroutines import start
 from hexapod_sim.nodes.sim_node import SimNode
 from hexapod_sim.sensor_table import LETTERS
-
-from hexapod_agent import checkpoint
 
 pytestmark = pytest.mark.graph
 STEPS = 40

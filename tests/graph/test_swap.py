@@ -11,13 +11,15 @@ from dataclasses import dataclass
 
 import pytest
 from hexapod_agent.contract.limits import Limits, parse_frames
-from hexapod_agent.contract.messages import listen_and_check
 from hexapod_agent.contract.report import SensorReport
-from hexapod_agent.observation import ObservationSpec
-from hexapod_agent.play_node import PlayNode
-from hexapod_agent.real_time import State
-from hexapod_agent.run_spec import RunSpec
-from hexapod_agent.training import Trainer
+from hexapod_agent.learning import checkpoint
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.nodes import real_time
+from hexapod_agent.nodes.contract_check import listen_and_check
+from hexapod_agent.nodes.play_node import PlayNode
+from hexapod_agent.nodes.real_time import State
+from hexapod_agent.specification.observation import ObservationSpec
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_cpg.locomotion import Motion
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_node.coroutines import start
@@ -30,7 +32,6 @@ from nav_msgs.msg import Odometry
 from rclpy.parameter import Parameter
 from trajectory_msgs.msg import JointTrajectory
 
-from hexapod_agent import checkpoint, real_time
 from hexapod_sim import robot
 
 pytestmark = pytest.mark.graph

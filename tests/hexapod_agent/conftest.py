@@ -4,8 +4,8 @@
 """Small runs that several test modules train."""
 
 import pytest
-from hexapod_agent.run_spec import RunSpec
-from hexapod_agent.training import Trainer
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.specification.run_spec import RunSpec
 
 
 @pytest.fixture(scope='session')

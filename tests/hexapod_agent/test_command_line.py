@@ -7,8 +7,9 @@ import re
 from pathlib import Path
 
 import pytest
+from hexapod_agent.learning import checkpoint
 
-from hexapod_agent import checkpoint, evaluate, export, film
+from hexapod_agent import evaluate, export, film
 
 
 @pytest.fixture

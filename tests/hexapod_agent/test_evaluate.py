@@ -9,11 +9,16 @@ import sys
 
 import numpy as np
 import pytest
-from hexapod_agent.env import HexapodLine
-from hexapod_agent.evaluation import Episode, run_episode, summarize
-from hexapod_agent.policies import constant_policy, random_policy, trained_policy
+from hexapod_agent.deployment.policies import (
+    constant_policy,
+    random_policy,
+    trained_policy,
+)
+from hexapod_agent.environment.env import HexapodLine
+from hexapod_agent.environment.evaluation import Episode, run_episode, summarize
+from hexapod_agent.learning import checkpoint
 
-from hexapod_agent import checkpoint, evaluate
+from hexapod_agent import evaluate
 
 
 def test_figures_by_hand():

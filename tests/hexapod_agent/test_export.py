@@ -9,12 +9,13 @@ import numpy as np
 import onnx
 import onnxruntime
 import pytest
-from hexapod_agent.env import HexapodLine
-from hexapod_agent.policies import trained_policy
+from hexapod_agent.deployment.policies import trained_policy
+from hexapod_agent.environment.env import HexapodLine
+from hexapod_agent.learning import checkpoint
 from hexapod_sim.sensor_table import CHANNELS, LETTERS, PREVIOUS_ACTION
 from hexapod_sim.sensors import observe
 
-from hexapod_agent import checkpoint, export
+from hexapod_agent import export
 
 # Sums of at most 126 products in float32 and in another order: some ulp (6e-8) of numbers of
 # about 10 in the hidden layers.

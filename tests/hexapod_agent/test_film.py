@@ -5,9 +5,10 @@
 
 import numpy as np
 import pytest
+from hexapod_agent.learning import checkpoint
 from PIL import Image
 
-from hexapod_agent import checkpoint, film
+from hexapod_agent import film
 
 SMALL = ['--width', '48', '--height', '32', '--seconds', '0.4']
 

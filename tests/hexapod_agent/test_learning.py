@@ -7,12 +7,12 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
-from hexapod_agent.env import HexapodLine
-from hexapod_agent.evaluation import Evaluation, run_episode, summarize
-from hexapod_agent.policies import Policy, constant_policy, trained_policy
-from hexapod_agent.run_spec import RunSpec
+from hexapod_agent.deployment.policies import Policy, constant_policy, trained_policy
+from hexapod_agent.environment.env import HexapodLine
+from hexapod_agent.environment.evaluation import Evaluation, run_episode, summarize
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_agent.train import train_episode
-from hexapod_agent.training import Trainer
 
 STARTS = 10
 

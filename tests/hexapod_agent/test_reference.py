@@ -21,10 +21,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from hexapod_agent.provenance import provenance
+from hexapod_agent.learning import checkpoint
+from hexapod_agent.learning.provenance import provenance
 from torch import Tensor
 
-from hexapod_agent import checkpoint, train
+from hexapod_agent import train
 
 RECORDED = Path(__file__).parents[1] / 'data' / 'reference_07dd037.json'
 SETS = ('', 'CE', 'ABCDE')

@@ -9,9 +9,10 @@ import re
 import numpy as np
 import pytest
 import yaml
-from hexapod_agent.training import Trainer
+from hexapod_agent.learning import checkpoint
+from hexapod_agent.learning.training import Trainer
 
-from hexapod_agent import checkpoint, train
+from hexapod_agent import train
 
 
 @pytest.fixture

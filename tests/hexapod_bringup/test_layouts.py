@@ -10,7 +10,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from hexapod_agent.metrics import METRICS
+from hexapod_agent.learning.metrics import METRICS
 from hexapod_bringup.layout import MAKERS, NAMESPACE, main
 from hexapod_bringup.layouts.foxglove import foxglove
 from hexapod_bringup.layouts.plotjuggler import plotjuggler

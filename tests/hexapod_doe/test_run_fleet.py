@@ -14,10 +14,11 @@ import numpy as np
 import pytest
 import torch
 import yaml
-from hexapod_agent.env import HexapodLine
-from hexapod_agent.run_spec import RunSpec
+from hexapod_agent.environment.env import HexapodLine
+from hexapod_agent.learning import checkpoint, run_checkpoint
+from hexapod_agent.learning.training import Trainer, TrainingDivergedError
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_agent.train import train_episode
-from hexapod_agent.training import Trainer, TrainingDivergedError
 from hexapod_doe.bags.digest import digest
 from hexapod_doe.bags.run_record import find_bags, read_run
 from hexapod_doe.bags.verify import verify
@@ -26,7 +27,6 @@ from hexapod_doe.campaigns.campaign_lock import campaign_lock, row_lock
 from hexapod_doe.campaigns.failures import read_failures
 from hexapod_doe.campaigns.plan_copy import place_plan
 
-from hexapod_agent import checkpoint, run_checkpoint
 from hexapod_doe import plan, run_fleet
 
 EPISODES = 5

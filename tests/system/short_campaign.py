@@ -9,10 +9,10 @@ import subprocess
 from pathlib import Path
 
 import pandas as pd
-from hexapod_agent.env import HexapodLine
-from hexapod_agent.run_spec import RunSpec
+from hexapod_agent.environment.env import HexapodLine
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_agent.train import train_episode
-from hexapod_agent.training import Trainer
 from hexapod_doe.bags.run_record import find_bags, read_run
 from hexapod_doe.bags.verify import verify
 from hexapod_doe.designs.plan_file import read_plan

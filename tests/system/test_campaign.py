@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.specification.observation import ObservationSpec
 from hexapod_doe.bags.run_record import read_run
 from hexapod_doe.designs.plan_file import read_plan
 from mcap.reader import make_reader

@@ -6,12 +6,11 @@
 from __future__ import annotations
 
 import pytest
-from hexapod_agent.run_spec import RunSpec
-from hexapod_agent.training import Trainer
+from hexapod_agent.learning import checkpoint
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_doe.bags.run_record import read_run
 from hexapod_doe.replays.follow import read_track, responses
-
-from hexapod_agent import checkpoint
 
 pytestmark = pytest.mark.system
 LAUNCH = 'ros2 launch hexapod_bringup follow.launch.xml'

@@ -9,10 +9,9 @@ import re
 import signal
 
 import pytest
-from hexapod_agent.run_spec import RunSpec
-from hexapod_agent.training import Trainer
-
-from hexapod_agent import checkpoint
+from hexapod_agent.learning import checkpoint
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.specification.run_spec import RunSpec
 
 pytestmark = pytest.mark.system
 SMALL = {'actor': {'hidden': [16, 12]}, 'critic': {'hidden': [16, 12]}}

@@ -138,7 +138,7 @@ main()
 def test_a_signal_while_libraries_are_loaded_ends_a_node_with_status_0(
     after: float, how: signal.Signals
 ) -> None:
-    program = EARLY.format(module='hexapod_agent.agent_node', after=after, number=int(how))
+    program = EARLY.format(module='hexapod_agent.nodes.agent_node', after=after, number=int(how))
     ended = subprocess.run(
         [sys.executable, '-c', program], capture_output=True, text=True, timeout=60, check=False
     )

@@ -21,7 +21,7 @@ from hexapod_agent.contract.limits import Limits
 from hexapod_agent.contract.report import SensorReport, TopicRow, topic_row
 from hexapod_agent.contract.subject import Subject
 from hexapod_agent.contract.timing import Clock
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.specification.observation import ObservationSpec
 
 _READABLE: tuple[Callable[[Subject], Iterator[Finding]], ...] = (
     shape.check_shape,

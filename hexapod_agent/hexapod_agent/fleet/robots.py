@@ -9,9 +9,9 @@ from hexapod_cpg.mapping import ACTION_SIZE, command_from_action
 from hexapod_cpg.oscillator import start_state
 from hexapod_sim.task import LineTask, Outcome
 
-from hexapod_agent.env import Observation, read_observation
-from hexapod_agent.observation import ObservationSpec
-from hexapod_agent.run_spec import RunSpec
+from hexapod_agent.environment.env import Observation, read_observation
+from hexapod_agent.specification.observation import ObservationSpec
+from hexapod_agent.specification.run_spec import RunSpec
 
 
 class Robots:
@@ -50,7 +50,7 @@ class Robots:
         """Observe one robot, its action being the one that was commanded last.
 
         Raises:
-            hexapod_agent.observation.ObservationError: A reading is not finite.
+            hexapod_agent.specification.observation.ObservationError: A reading is not finite.
         """
         x, y = self._cpg.x[place], self._cpg.y[place]
         return read_observation(self._tasks[place], x, y, spec, self.actions[place])

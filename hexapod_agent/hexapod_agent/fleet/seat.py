@@ -11,9 +11,9 @@ import numpy as np
 from hexapod_sim.task import Outcome
 from numpy.typing import NDArray
 
-from hexapod_agent.observation import ObservationError
-from hexapod_agent.summary import EpisodeSummary
-from hexapod_agent.training import Trainer, TrainingDivergedError
+from hexapod_agent.learning.summary import EpisodeSummary
+from hexapod_agent.learning.training import Trainer, TrainingDivergedError
+from hexapod_agent.specification.observation import ObservationError
 
 
 class Run(Protocol):

@@ -15,11 +15,11 @@ import torch
 from hexapod_cpg.mapping import ACTION_SIZE
 from numpy.typing import NDArray
 
-from hexapod_agent.ddpg import Ddpg, UpdateStatistics
+from hexapod_agent.algorithms.ddpg.ddpg import Ddpg, UpdateStatistics
+from hexapod_agent.algorithms.replay import Batch
 from hexapod_agent.fleet.crew import Crew, Job
 from hexapod_agent.fleet.seat import Seat
-from hexapod_agent.replay import Batch
-from hexapod_agent.run_spec import RunSpec
+from hexapod_agent.specification.run_spec import RunSpec
 
 
 class StackedLearners:

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from hexapod_agent.summary import EpisodeSummary
+from hexapod_agent.learning.summary import EpisodeSummary
 from mcap_ros2._dynamic import serialize_dynamic
 
 from hexapod_doe.bags.run_bag import EPISODE_RESULT

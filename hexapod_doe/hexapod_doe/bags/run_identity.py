@@ -17,7 +17,7 @@ from types import MappingProxyType
 from typing import Any
 
 import yaml
-from hexapod_agent.run_spec import ConfigError, RunSpec
+from hexapod_agent.specification.run_spec import ConfigError, RunSpec
 
 CONFIG = 'config'  # where a bag's specification stood before it had the sensors in it
 SPEC = 'spec'

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import pandas as pd
+from hexapod_agent.learning import metrics
 
-from hexapod_agent import metrics
 from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.bags.bag_state import find_bags, is_complete
 from hexapod_doe.bags.run_bag import EPISODE_RESULT

@@ -11,7 +11,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from hexapod_agent.run_spec import RunSpec
+from hexapod_agent.specification.run_spec import RunSpec
 
 from hexapod_doe.bags.bag_state import sound_metadata
 from hexapod_doe.bags.run_identity import differences, run_identity, settings
@@ -113,7 +113,7 @@ class RunSettings:
         """Return the configuration of the runs; None where the file is on the workers alone.
 
         Raises:
-            hexapod_agent.run_spec.ConfigError: the file cannot be used.
+            hexapod_agent.specification.run_spec.ConfigError: the file cannot be used.
         """
         here = not self.config or Path(self.config).exists()
         return RunSpec.load(self.config or None) if here else None
@@ -122,7 +122,7 @@ class RunSettings:
         """Return what the bag of each run will say of them, see `bags.run_identity.settings`.
 
         Raises:
-            hexapod_agent.run_spec.ConfigError: the file cannot be used.
+            hexapod_agent.specification.run_spec.ConfigError: the file cannot be used.
         """
         config = self.loaded()
         if config is None:

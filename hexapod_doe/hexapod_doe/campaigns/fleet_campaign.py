@@ -10,8 +10,8 @@ from datetime import datetime
 from types import TracebackType
 from typing import Self
 
-from hexapod_agent.run_spec import RunSpec
-from hexapod_agent.summary import EpisodeSummary
+from hexapod_agent.learning.summary import EpisodeSummary
+from hexapod_agent.specification.run_spec import RunSpec
 
 from hexapod_doe.campaigns.campaign import Campaign, Row
 from hexapod_doe.campaigns.campaign_lock import row_lock

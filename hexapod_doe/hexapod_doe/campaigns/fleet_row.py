@@ -8,15 +8,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Protocol
 
-from hexapod_agent.checkpoint import CheckpointError
-from hexapod_agent.event_log import EventLog
-from hexapod_agent.provenance import provenance
-from hexapod_agent.run_spec import RunSpec
-from hexapod_agent.summary import EpisodeSummary
-from hexapod_agent.training import Trainer
+from hexapod_agent.learning import checkpoint, run_checkpoint
+from hexapod_agent.learning.checkpoint import CheckpointError
+from hexapod_agent.learning.event_log import EventLog
+from hexapod_agent.learning.provenance import provenance
+from hexapod_agent.learning.summary import EpisodeSummary
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 
-from hexapod_agent import checkpoint, run_checkpoint
 from hexapod_doe.bags.carry_over import carry_over, find_cut
 from hexapod_doe.bags.episode_result import serialise
 from hexapod_doe.bags.recording import Recording
@@ -110,7 +110,7 @@ class FleetRow:
 
         Raises:
             BagError: the disk refuses.
-            hexapod_agent.checkpoint.CheckpointError: likewise.
+            hexapod_agent.learning.checkpoint.CheckpointError: likewise.
         """
         # The start of an episode is a period after the end of the one before.
         self._last_ns += (summary.steps + 1) * CONTROL_PERIOD_NS

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from hexapod_agent.run_spec import RunSpec
+from hexapod_agent.specification.run_spec import RunSpec
 
 from hexapod_doe.bags.run_identity import odd_runs
 from hexapod_doe.campaigns.campaign import shared_settings

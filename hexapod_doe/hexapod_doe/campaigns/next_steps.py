@@ -9,7 +9,7 @@ import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
-from hexapod_agent.run_spec import RunSpec
+from hexapod_agent.specification.run_spec import RunSpec
 
 from hexapod_doe.bags.run_identity import differences
 from hexapod_doe.campaigns.campaign import PLAN_FILE, shared_settings

@@ -9,7 +9,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from hexapod_agent.run_spec import RunSpec
+from hexapod_agent.specification.run_spec import RunSpec
 
 from hexapod_doe.campaigns.campaign import PLAN_FILE
 from hexapod_doe.designs.plan_file import PlanError

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from hexapod_agent.contract.evidence import Evidence, Offer, Sample, TopicEvidence, sample
 from hexapod_agent.contract.fields import checked_paths
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.specification.observation import ObservationSpec
 from hexapod_sim.channel import Channel
 
 from hexapod_doe.bags.bag_file import BagFile, several

@@ -11,7 +11,7 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from hexapod_agent.contract.limits import Limits, parse_frames
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.specification.observation import ObservationSpec
 from hexapod_sim.command_line import CommandLine, number, path
 from hexapod_sim.sensor_table import CHANNELS
 

@@ -10,8 +10,8 @@ import signal
 from functools import partial
 from pathlib import Path
 
-from hexapod_agent.action_names import TRAIN_RUN
-from hexapod_agent.agent_node import AgentNode
+from hexapod_agent.nodes.action_names import TRAIN_RUN
+from hexapod_agent.nodes.agent_node import AgentNode
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_node.actions import ActionClient

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hexapod_agent.contract.check import check_sensors
-from hexapod_agent.contract.messages import listen_and_check
 from hexapod_agent.contract.report import SensorReport
+from hexapod_agent.nodes.contract_check import listen_and_check
 from hexapod_node.coroutines import start
 from hexapod_node.node import Node
 from hexapod_node.spin import run

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticStatus
-from hexapod_agent.action_names import TRAIN_RUN
+from hexapod_agent.nodes.action_names import TRAIN_RUN
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import CampaignStatus
 from hexapod_node.actions import ActionClient

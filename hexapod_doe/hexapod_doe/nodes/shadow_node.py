@@ -14,10 +14,10 @@ from collections import defaultdict
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
-from hexapod_agent.action_names import PLAY_RUN
-from hexapod_agent.agent_node import AgentNode
-from hexapod_agent.checkpoint import load
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.learning.checkpoint import load
+from hexapod_agent.nodes.action_names import PLAY_RUN
+from hexapod_agent.nodes.agent_node import AgentNode
+from hexapod_agent.specification.observation import ObservationSpec
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import CpgCommand
 from hexapod_interfaces.srv import ResetEpisode

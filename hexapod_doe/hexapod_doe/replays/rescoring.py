@@ -15,7 +15,7 @@ from itertools import pairwise
 from typing import Any
 
 import yaml
-from hexapod_agent.run_spec import RunSpec
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_sim.simulation import roll_pitch_yaw
 from hexapod_sim.sums import ordered_sum
 from hexapod_sim.task import DIVERGED, Outcome, TaskConfig, diverged, judge, line_at

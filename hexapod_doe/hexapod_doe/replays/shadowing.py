@@ -14,10 +14,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from hexapod_agent.messages import decode
-from hexapod_agent.observation import ObservationSpec
-from hexapod_agent.policies import Policy
-from hexapod_agent.run_spec import CpgConfig
+from hexapod_agent.deployment.policies import Policy
+from hexapod_agent.nodes.messages import decode
+from hexapod_agent.specification.observation import ObservationSpec
+from hexapod_agent.specification.run_spec import CpgConfig
 from hexapod_cpg.mapping import (
     ACTION_SIZE,
     COMMAND_FIELDS,

@@ -4,8 +4,8 @@
 """What the figures of a training mean: the same names in bags, TensorBoard files and reports."""
 
 import pandas as pd
+from hexapod_agent.learning import metrics
 
-from hexapod_agent import metrics
 from hexapod_doe.records.results import Analysis
 from hexapod_doe.reporting.tables import Table
 

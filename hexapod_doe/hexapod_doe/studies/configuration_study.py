@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import yaml
-from hexapod_agent.observation import parse_observations
-from hexapod_agent.run_spec import ConfigError, RunSpec
+from hexapod_agent.specification.observation import parse_observations
+from hexapod_agent.specification.run_spec import ConfigError, RunSpec
 from pydantic import PositiveInt, TypeAdapter, ValidationError
 
 NONE = 'none'  # the set of no optional sensor, in the table and on the command line

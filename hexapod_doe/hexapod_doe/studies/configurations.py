@@ -25,17 +25,17 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from hexapod_agent.env import HexapodLine
-from hexapod_agent.evaluation import Evaluation, run_episode, summarize
-from hexapod_agent.policies import Policy, constant_policy, trained_policy
-from hexapod_agent.provenance import provenance
-from hexapod_agent.run_spec import ConfigError
+from hexapod_agent.deployment.policies import Policy, constant_policy, trained_policy
+from hexapod_agent.environment.env import HexapodLine
+from hexapod_agent.environment.evaluation import Evaluation, run_episode, summarize
+from hexapod_agent.learning import checkpoint
+from hexapod_agent.learning.provenance import provenance
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.specification.run_spec import ConfigError
 from hexapod_agent.train import train_episode
-from hexapod_agent.training import Trainer
 from hexapod_cpg.mapping import ACTION_SIZE
 from hexapod_sim.command_line import CommandLine, file, folder, whole
 
-from hexapod_agent import checkpoint
 from hexapod_doe.studies.configuration_study import JUDGEMENT_SEED, Run, Study, letters_of
 from hexapod_doe.studies.configuration_tables import effects, figures
 

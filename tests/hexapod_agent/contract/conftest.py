@@ -15,7 +15,7 @@ from hexapod_agent.contract.evidence import Evidence, Offer, Sample, TopicEviden
 from hexapod_agent.contract.finding import Finding
 from hexapod_agent.contract.limits import Limits
 from hexapod_agent.contract.report import SensorReport
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.specification.observation import ObservationSpec
 from hexapod_sim.channel import Channel
 from hexapod_sim.robot import CONTROL_PERIOD_NS, GRAVITY, JOINTS, NEUTRAL_POSE, TOTAL_MASS
 from hexapod_sim.sensor_table import CHANNELS, LETTERS

@@ -7,18 +7,18 @@ from collections.abc import Callable
 from functools import partial
 
 import pytest
-from hexapod_agent.env import HexapodLine
+from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.fleet.crew import Crew
 from hexapod_agent.fleet.fleet import Fleet
 from hexapod_agent.fleet.learners import Learners, SeparateLearners
 from hexapod_agent.fleet.robots import Robots
 from hexapod_agent.fleet.seat import Run
 from hexapod_agent.fleet.stacked import StackedLearners
-from hexapod_agent.observation import ObservationSpec
-from hexapod_agent.run_spec import RunSpec
-from hexapod_agent.summary import EpisodeSummary
+from hexapod_agent.learning.summary import EpisodeSummary
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.specification.observation import ObservationSpec
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_agent.train import train_episode
-from hexapod_agent.training import Trainer
 from hexapod_sim.sensor_table import LETTERS
 
 

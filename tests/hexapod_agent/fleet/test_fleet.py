@@ -10,7 +10,7 @@ import pytest
 import torch
 from hexapod_agent.fleet.robots import Robots
 from hexapod_agent.fleet.stacked import StackedLearners
-from hexapod_agent.training import TrainingDivergedError
+from hexapod_agent.learning.training import TrainingDivergedError
 
 RUNS = (('ABCDEFG', 3), ('', 4), ('BC', 5))
 

@@ -7,7 +7,7 @@ import math
 from array import array
 
 import pytest
-from hexapod_agent.summary import EpisodeSummary
+from hexapod_agent.learning.summary import EpisodeSummary
 from hexapod_doe.bags.cdr import stamp_ns
 from hexapod_doe.bags.episode_result import serialise
 

@@ -5,7 +5,7 @@
 
 import pytest
 import yaml
-from hexapod_agent.run_spec import RunSpec
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_doe.bags.run_identity import differences, making, odd_runs, run_identity, settings
 
 

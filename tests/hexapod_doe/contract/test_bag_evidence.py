@@ -9,7 +9,7 @@ import json
 from pathlib import Path
 
 import pytest
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.specification.observation import ObservationSpec
 from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.nodes.check_sensors_node import main
 from hexapod_sim.sensor_table import CHANNELS

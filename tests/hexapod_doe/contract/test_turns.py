@@ -9,7 +9,7 @@ from array import array
 from pathlib import Path
 
 import pytest
-from hexapod_agent.observation import ObservationSpec
+from hexapod_agent.specification.observation import ObservationSpec
 from hexapod_doe.bags.bag_writer import BagWriter
 from hexapod_doe.bags.rosbag2 import OfferedQos, Topic
 from hexapod_doe.contract.bag_evidence import bag_evidence

@@ -15,10 +15,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from hexapod_agent.agent_node import AgentNode
-from hexapod_agent.play_node import PlayNode
-from hexapod_agent.run_spec import RunSpec
-from hexapod_agent.training import Trainer
+from hexapod_agent.learning import checkpoint, metrics
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.nodes.agent_node import AgentNode
+from hexapod_agent.nodes.play_node import PlayNode
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.designs.design import fraction
@@ -41,7 +42,6 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.utilities import try_shutdown
 
-from hexapod_agent import checkpoint, metrics
 from hexapod_bringup.description_node import DescriptionNode
 
 SAMPLE_BAG = 'bags/sample'

@@ -20,8 +20,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from diagnostic_msgs.msg import DiagnosticArray
-from hexapod_agent.run_spec import RunSpec
-from hexapod_agent.training import Trainer
+from hexapod_agent.learning import checkpoint
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.node import Node
 from hexapod_node.session import begin
@@ -31,8 +32,6 @@ from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.utilities import try_shutdown
 from rich.console import Console
 from rich.table import Table
-
-from hexapod_agent import checkpoint
 
 NODES = ('sim', 'cpg', 'play')
 TARGET_SHARE = 0.01

@@ -19,7 +19,7 @@ def make_worker() -> list[Node]:
     Their libraries take seconds to load, and only from here on does a signal end the process in
     order.
     """
-    from hexapod_agent.agent_node import AgentNode
+    from hexapod_agent.nodes.agent_node import AgentNode
     from hexapod_cpg.nodes.cpg_node import CpgNode
     from hexapod_doe.nodes.recorder_node import RecorderNode
     from hexapod_sim.nodes.sim_node import SimNode

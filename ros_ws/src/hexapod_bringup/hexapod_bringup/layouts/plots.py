@@ -8,9 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from hexapod_agent.learning import metrics
 from hexapod_sim.robot import LEG_JOINTS, LEGS
-
-from hexapod_agent import metrics
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,261 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Deep deterministic policy gradient for a stack of agents, every gradient written out.
+
+Lillicrap et al. 2016, with the order of operations of MATLAB's DDPG agent: critic, actor, targets.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from hexapod_agent.algorithms.ddpg.action_value import ActionValue
+from hexapod_agent.algorithms.ddpg.networks import Actor, initial_bounds
+from hexapod_agent.algorithms.ddpg.optimizer import ClippedAdam
+from hexapod_agent.algorithms.ddpg.parameters import ParameterStack
+from hexapod_agent.algorithms.ddpg.running_scale import RunningScale
+from hexapod_agent.algorithms.hyperparameters import ActorConfig, CriticConfig
+from hexapod_agent.algorithms.replay import Batch
+
+
+@dataclass(frozen=True)
+class UpdateStatistics:
+    """What one update saw, each of shape (agents,).
+
+    Attributes:
+        critic_loss: Mean squared temporal difference.
+        actor_loss: -mean Q of the policy's actions, with the terms that the config adds.
+        mean_q: Mean Q of the policy's actions.
+    """
+
+    critic_loss: Tensor
+    actor_loss: Tensor
+    mean_q: Tensor
+
+
+_CRITICS = ('critic', 'twin_critic')  # names in a state
+
+
+class Ddpg:
+    """Actor, critic, their targets and optimisers.
+
+    Attributes:
+        actor_parameters: Online actor.
+        critic_parameters: Online critic, the first of two.
+        actor_config: The policy's layers and training.
+        scale: How observations become the networks' inputs; None if they are.
+
+    Args:
+        observation_size: Numbers of an observation.
+        action_size: Numbers of an action.
+        actor: The policy and its training.
+        critic: The action value and its training.
+        batch_size: Transitions per update.
+        target_smoothing: Share of the online network that moves into its target per update.
+        generator: Draws the initial weights; None leaves them zero, for agents to be `put` in.
+        agents: Independent agents that learn side by side.
+        dtype: Number format of parameters, losses and optimisers.
+        hidden_dtype: Number format of the hidden layers in an update; `dtype` if None.
+        device: Where everything is kept and computed.
+        scale: How observations become inputs, which `act` and `update` take; it is kept here.
+    """
+
+    def __init__(
+        self,
+        observation_size: int,
+        action_size: int,
+        actor: ActorConfig,
+        critic: CriticConfig,
+        batch_size: int,
+        target_smoothing: float,
+        generator: torch.Generator | None,
+        agents: int = 1,
+        dtype: torch.dtype = torch.float32,
+        hidden_dtype: torch.dtype | None = None,
+        device: torch.device | str = 'cpu',
+        scale: RunningScale | None = None,
+    ) -> None:
+        sizes = (observation_size, action_size)
+        self.actor_config, self.scale = actor, scale
+        self._target_smoothing = target_smoothing
+        self._smoothing: float | Tensor = target_smoothing
+        self._single = agents == 1
+
+        self.actor_parameters = ParameterStack(
+            Actor.shapes(*sizes, actor.hidden), agents, dtype, device
+        )
+        self._critics = [
+            ActionValue(*sizes, critic, batch_size, agents, dtype, hidden_dtype, device)
+            for _ in range(2 if critic.twin else 1)
+        ]
+        self.critic_parameters = self._critics[0].parameters
+        if generator is not None:
+            for parameters in (self.actor_parameters, *(c.parameters for c in self._critics)):
+                parameters.draw(initial_bounds(parameters.shapes), generator)
+            for each in self._critics:
+                each.parameters.arrays['output.bias'].add_(critic.initial_value)
+                each.target_parameters.flat.copy_(each.parameters.flat)
+        self._actor_target_parameters = self.actor_parameters.copy()
+        self._actor_optimizer = ClippedAdam(
+            self.actor_parameters, actor.learning_rate, actor.l2, actor.gradient_threshold
+        )
+
+        # Acting stays in the full format; the updates' hidden layers may not.
+        norm = actor.layer_norm
+        self._policy = Actor(self.actor_parameters, 1, layer_norm=norm)
+        gradients = self._actor_optimizer.gradients
+        self._actor = Actor(self.actor_parameters, batch_size, gradients, hidden_dtype, norm)
+        self._target_actor = Actor(
+            self._actor_target_parameters, batch_size, None, hidden_dtype, norm
+        )
+        if generator is not None:
+            self._refresh()
+
+    def _inner(self, tensor: Tensor) -> Tensor:
+        """Drop the leading dimension of a stack of one, as the layers expect."""
+        return tensor[0] if self._single else tensor
+
+    def act(self, observation: Tensor) -> Tensor:
+        """Actions (agents, action size) for inputs (agents, observation size)."""
+        action = self._policy.forward(self._inner(observation.unsqueeze(1)))
+        return action.view(*observation.shape[:1], -1).clone()
+
+    def update(self, batch: Batch) -> UpdateStatistics:
+        """Take one gradient step: critic, actor, then both targets.
+
+        Moments of units that no longer fire decay to denormal numbers, on which the optimiser
+        takes two thirds longer. They are zero here, and nowhere else: the physics may run in
+        the same thread, and must not compute otherwise than in a process of its own.
+
+        Args:
+            batch: A batch per agent (agents, batch, ...); for a stack of one (batch, ...).
+        """
+        torch.set_flush_denormal(True)
+        try:
+            return self._update(batch)
+        finally:
+            torch.set_flush_denormal(False)
+
+    def learn_only(self, agents: Sequence[int]) -> None:
+        """Let an update leave all other agents of the stack as they are, from now on."""
+        for optimizer in self._optimizers().values():
+            optimizer.move_only(agents)
+        smoothing = torch.zeros(self.actor_parameters.agents, 1)
+        smoothing[list(agents)] = self._target_smoothing
+        self._smoothing = smoothing.to(self.actor_parameters.flat)
+
+    def set_rate_share(self, share: float, agent: int = 0) -> None:
+        """Let an agent of the stack learn at so much of the learning rates from now on."""
+        for optimizer in self._optimizers().values():
+            optimizer.set_share(agent, share)
+
+    def _update(self, batch: Batch) -> UpdateStatistics:
+        critic_loss = self._update_critic(batch)
+        actor_loss, mean_q = self._update_actor(batch)
+        for critic in self._critics:
+            critic.follow(self._smoothing)
+        self._actor_target_parameters.flat.lerp_(self.actor_parameters.flat, self._smoothing)
+        self._target_actor.refresh()
+        return UpdateStatistics(critic_loss.view(-1), actor_loss.view(-1), mean_q.view(-1))
+
+    def _update_critic(self, batch: Batch) -> Tensor:
+        """Move every Q(s, a) towards y = r + bootstrap min Q'(s', mu'(s'))."""
+        next_action = self._target_actor.forward(batch.next_observation)
+        target, *others = [
+            critic.target.forward(batch.next_observation, next_action) for critic in self._critics
+        ]
+        for other in others:
+            torch.minimum(target, other, out=target)
+        torch.addcmul(batch.reward, batch.bootstrap, target, out=target)
+        losses = [critic.learn(batch, target) for critic in self._critics]
+        return losses[0] if len(losses) == 1 else torch.stack(losses).mean(dim=0)
+
+    def _update_actor(self, batch: Batch) -> tuple[Tensor, Tensor]:
+        """Move mu(s) up the slope of Q(s, mu(s)) under the critic that was just updated."""
+        config = self.actor_config
+        action = self._actor.forward(batch.observation)
+        critic = self._critics[0].online
+        value = critic.forward(batch.observation, action)
+        mean_q, size = value.mean(dim=-2), value.shape[-2]
+        # L = -mean Q / n + c mean z², dL/dQ = -1 / (n batch), n = mean |Q| or 1
+        magnitude = torch.linalg.vector_norm(value, 1, dim=-2) / size
+        scale = magnitude if config.normalize_loss else torch.ones_like(magnitude)
+        loss = -mean_q / scale
+        penalty = config.preactivation_penalty / (size * action.shape[-1])
+        if penalty:
+            z = self._actor.preactivation.flatten(-2)
+            loss.add_(torch.linalg.vecdot(z, z).unsqueeze(-1), alpha=penalty)
+        value.copy_(scale.mul_(-size).reciprocal_().unsqueeze(-2))
+        self._actor.backward(critic.action_gradient(value), 2.0 * penalty)
+        self._actor_optimizer.step()
+        self._actor.refresh()
+        return loss, mean_q
+
+    def state_dict(self) -> dict[str, Any]:
+        """Networks, targets and optimisers."""
+        return (
+            {name: part.flat for name, part in self._stacks().items()}
+            | {name: optimizer.state_dict() for name, optimizer in self._optimizers().items()}
+            | ({'scale': self.scale.state_dict()} if self.scale else {})
+        )
+
+    def acting_state(self) -> dict[str, Any]:
+        """The actor alone, with the scale of its inputs."""
+        scale = {'scale': self.scale.acting_state()} if self.scale else {}
+        return {'actor': self.actor_parameters.flat, **scale}
+
+    def load_state_dict(self, state: dict[str, Any]) -> None:
+        """Take over what `state_dict` or `acting_state` gave, of networks with the same layers."""
+        for name, part in self._stacks().items():
+            if name in state:
+                part.flat.copy_(state[name])
+        if self.scale:
+            self.scale.load_state_dict(state['scale'])
+        for name, optimizer in self._optimizers().items():
+            if name in state:
+                optimizer.load_state_dict(state[name])
+        self._refresh()
+
+    def put(self, agent: int, single: 'Ddpg') -> None:
+        """Take over a stack of one, of the same layers, as an agent of this stack.
+
+        Its observations may be smaller than this stack's, which are then to be filled with zeros.
+        """
+        for mine, its in zip(self._stacks().values(), single._stacks().values(), strict=True):
+            mine.put(agent, its)
+        optimizers = zip(self._optimizers().values(), single._optimizers().values(), strict=True)
+        for ours, theirs in optimizers:
+            ours.put(agent, theirs)
+        self._refresh()
+
+    def take(self, agent: int, single: 'Ddpg') -> None:
+        """Write an agent of this stack to a stack of one: the inverse of `put`."""
+        for mine, its in zip(self._stacks().values(), single._stacks().values(), strict=True):
+            mine.take(agent, its)
+        optimizers = zip(self._optimizers().values(), single._optimizers().values(), strict=True)
+        for ours, theirs in optimizers:
+            ours.take(agent, theirs)
+        single._refresh()
+
+    def _refresh(self) -> None:
+        """Let the updates' networks take over parameters that have moved."""
+        self._actor.refresh()
+        self._target_actor.refresh()
+        for critic in self._critics:
+            critic.refresh()
+
+    def _stacks(self) -> dict[str, ParameterStack]:
+        stacks = {'actor': self.actor_parameters, 'target_actor': self._actor_target_parameters}
+        for name, critic in zip(_CRITICS, self._critics, strict=False):
+            stacks |= {name: critic.parameters, f'target_{name}': critic.target_parameters}
+        return stacks
+
+    def _optimizers(self) -> dict[str, ClippedAdam]:
+        critics = zip(_CRITICS, self._critics, strict=False)
+        return {'actor_optimizer': self._actor_optimizer} | {
+            f'{name}_optimizer': critic.optimizer for name, critic in critics
+        }

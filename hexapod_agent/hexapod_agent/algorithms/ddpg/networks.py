@@ -1,0 +1,231 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Actor and critic of the article, forward and backward written out over preallocated buffers.
+
+Written out, the actor step computes only what its formula needs: no gradient of the critic's
+weights and none through the critic's observation branch. Tests hold it against autograd.
+Tensors have the shapes that `layers` tells. Hidden layers may compute in a shorter number format
+(`dtype`); the output layers, what they get and what they give stay in that of the parameters.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+
+import torch
+from torch import Tensor
+
+from hexapod_agent.algorithms.ddpg.layers import (
+    Activation,
+    Cast,
+    Dense,
+    Shortened,
+    SingleUnit,
+    layer_shapes,
+)
+from hexapod_agent.algorithms.ddpg.parameters import ParameterStack
+
+OUTPUT_BOUND = 5e-3  # of the output layers' initial weights
+MERGES = ('add', 'append')
+
+
+def initial_bounds(shapes: Mapping[str, tuple[int, ...]]) -> dict[str, float]:
+    """Bound of each array's uniform initial distribution: 1/sqrt(fan in), output layer 5e-3."""
+    fan_in = {name.split('.')[0]: s[1] for name, s in shapes.items() if name.endswith('.weight')}
+    layers = {name: name.split('.')[0] for name in shapes}
+    return {
+        name: OUTPUT_BOUND if layer == 'output' else 1.0 / math.sqrt(fan_in[layer])
+        for name, layer in layers.items()
+    }
+
+
+class Actor:
+    """Policy mu(s) = tanh(z): observation, hidden ReLU layers, one tanh output per action.
+
+    Args:
+        parameters: Layout of `Actor.shapes`.
+        batch: Observations per pass.
+        gradients: Filled by `backward`; None for a pass that never goes back.
+        dtype: Number format of the hidden layers; that of the parameters if None.
+        layer_norm: Whether each hidden layer is normalised before its ReLU.
+    """
+
+    @staticmethod
+    def shapes(
+        observation_size: int, action_size: int, hidden: Sequence[int]
+    ) -> dict[str, tuple[int, ...]]:
+        """Names and shapes of the arrays, in the order of the flat tensor."""
+        shapes: dict[str, tuple[int, ...]] = {}
+        for index, (inputs, outputs) in enumerate(pairwise([observation_size, *hidden])):
+            shapes |= layer_shapes(f'hidden{index}', inputs, outputs)
+        return shapes | layer_shapes('output', hidden[-1], action_size)
+
+    def __init__(
+        self,
+        parameters: ParameterStack,
+        batch: int,
+        gradients: ParameterStack | None = None,
+        dtype: torch.dtype | None = None,
+        layer_norm: bool = False,
+    ) -> None:
+        wide = parameters.flat.dtype
+        narrow = dtype or wide
+        self._shortened = short = Shortened(parameters, gradients, narrow)
+        self._hidden = _branch(short, 'hidden', batch)
+        self._activations = [Activation(layer_norm) for _ in self._hidden]
+        self._output = Dense(parameters, gradients, 'output', batch)
+        last = self._hidden[-1].output
+        self._widen = Cast(last, wide)
+        self._narrow = Cast(last.to(wide), narrow)
+        first = self._hidden[0]
+        self._narrow_input = Cast(first.input_like(wide), narrow)
+        self.preactivation = self._output.output
+        self.action = torch.empty_like(self.preactivation)
+        self._slope = torch.empty_like(self.preactivation)
+
+    def refresh(self) -> None:
+        """Take over parameters that have moved."""
+        self._shortened.refresh()
+
+    def forward(self, observation: Tensor) -> Tensor:
+        """Actions of a batch, in the buffer `action`; `preactivation` holds them before tanh."""
+        self._x = x = self._narrow_input(observation)
+        for layer, activation in zip(self._hidden, self._activations, strict=True):
+            x = activation.forward(layer.forward(x))
+        self._features = self._widen(x)
+        self._output.forward(self._features)
+        return torch.tanh(self.preactivation, out=self.action)
+
+    def backward(self, action_gradient: Tensor, preactivation_factor: float) -> None:
+        """Fill the gradients of the last `forward`.
+
+        Args:
+            action_gradient: Gradient of the loss with respect to the actions; overwritten.
+            preactivation_factor: c of a further term c/2 sum(z²) of the loss.
+        """
+        # dz = da (1 - tanh² z) + c z
+        torch.mul(self.action, self.action, out=self._slope)
+        gradient = torch.addcmul(
+            action_gradient, action_gradient, self._slope, value=-1.0, out=action_gradient
+        )
+        gradient.add_(self.preactivation, alpha=preactivation_factor)
+        hidden = self._narrow(self._output.backward_input(gradient))
+        gradient_in = self._activations[-1].backward(hidden)
+        _branch_backward(self._hidden, self._activations[:-1], self._x, gradient_in)
+        self._shortened.widen_gradients()
+        self._output.backward(self._features, gradient)
+
+
+class Critic:
+    """Action value Q(s, a): a branch per input, merged, ReLU, one linear output.
+
+    `add` sums the branches before the ReLU, which couples state and action. `append` puts them
+    side by side; then Q = f(s) + g(a), and its action gradient does not depend on the state.
+
+    Args:
+        parameters: Layout of `Critic.shapes`; tells which merge it is.
+        batch: Pairs of observation and action per pass.
+        gradients: Filled by `backward`; None for a pass that never goes back.
+        dtype: Number format of the branches; that of the parameters if None.
+        layer_norm: Whether each hidden layer is normalised before its ReLU, the merged one too.
+    """
+
+    @staticmethod
+    def shapes(
+        observation_size: int, action_size: int, hidden: Sequence[int], merge: str = 'add'
+    ) -> dict[str, tuple[int, ...]]:
+        """Names and shapes of the arrays, in the order of the flat tensor."""
+        shapes: dict[str, tuple[int, ...]] = {}
+        for index, (inputs, outputs) in enumerate(pairwise([observation_size, *hidden])):
+            shapes |= layer_shapes(f'observation{index}', inputs, outputs)
+        shapes |= layer_shapes('action', action_size, hidden[-1])
+        merged = hidden[-1] * (2 if merge == 'append' else 1)
+        return shapes | layer_shapes('output', merged, 1)
+
+    def __init__(
+        self,
+        parameters: ParameterStack,
+        batch: int,
+        gradients: ParameterStack | None = None,
+        dtype: torch.dtype | None = None,
+        layer_norm: bool = False,
+    ) -> None:
+        wide = parameters.flat.dtype
+        narrow = dtype or wide
+        self._shortened = short = Shortened(parameters, gradients, narrow)
+        self._observation = _branch(short, 'observation', batch)
+        self._activations = [Activation(layer_norm) for _ in self._observation]
+        self._action = Dense(short.parameters, short.gradients, 'action', batch)
+        self._output = SingleUnit(parameters, gradients, 'output', batch)
+        self.value = self._output.output
+        self._merged = self._output.input_like(narrow)
+        self._widen = Cast(self._merged, wide)
+        self._narrow = Cast(self._merged.to(wide), narrow)
+        self._narrow_observation = Cast(self._observation[0].input_like(wide), narrow)
+        self._narrow_action = Cast(self._action.input_like(wide), narrow)
+        self._widen_gradient = Cast(self._action.input_like(narrow), wide)
+        width = self._action.output.shape[-1]
+        self._append = self._merged.shape[-1] == 2 * width
+        self._observation_part = slice(0, width)
+        self._action_part = slice(width, 2 * width) if self._append else slice(0, width)
+
+    def refresh(self) -> None:
+        """Take over parameters that have moved."""
+        self._shortened.refresh()
+
+    def forward(self, observation: Tensor, action: Tensor) -> Tensor:
+        """Values (..., batch, 1) in the buffer `value`."""
+        self._s = x = self._narrow_observation(observation)
+        self._a = self._narrow_action(action)
+        *below, merge = self._activations
+        for layer, activation in zip(self._observation, below, strict=False):
+            x = activation.forward(layer.forward(x))
+        last = self._observation[-1]
+        if self._append:
+            self._merged[..., self._observation_part] = last.forward(x)
+            self._merged[..., self._action_part] = self._action.forward(self._a)
+        else:
+            last.product(x, last.bias + self._action.bias, self._merged)
+            self._action.product(self._a, self._merged, self._merged)
+        self._features = self._widen(merge.forward(self._merged))
+        return self._output.forward(self._features)
+
+    def backward(self, value_gradient: Tensor) -> None:
+        """Fill the gradients of the last `forward`, given dL/dQ (..., batch, 1)."""
+        merged = self._merged_gradient(value_gradient)
+        self._action.backward(self._a, merged[..., self._action_part])
+        part = merged[..., self._observation_part]
+        _branch_backward(self._observation, self._activations[:-1], self._s, part)
+        self._shortened.widen_gradients()
+        self._output.backward(self._features, value_gradient)
+
+    def action_gradient(self, value_gradient: Tensor) -> Tensor:
+        """Gradient with respect to the actions of the last `forward`, in a buffer."""
+        merged = self._merged_gradient(value_gradient)
+        return self._widen_gradient(self._action.backward_input(merged[..., self._action_part]))
+
+    def _merged_gradient(self, value_gradient: Tensor) -> Tensor:
+        """Gradient before the ReLU that follows the merge."""
+        gradient = self._narrow(self._output.backward_input(value_gradient))
+        return self._activations[-1].backward(gradient)
+
+
+def _branch(short: Shortened, prefix: str, batch: int) -> list[Dense]:
+    """Make the layers '<prefix>0', '<prefix>1', ... that the parameters hold."""
+    weights = (name for name in short.parameters.shapes if 'weight' in name)
+    return [
+        Dense(short.parameters, short.gradients, name.removesuffix('.weight'), batch)
+        for name in weights
+        if name.startswith(prefix)
+    ]
+
+
+def _branch_backward(
+    layers: list[Dense], activations: list[Activation], x: Tensor, gradient: Tensor
+) -> None:
+    """Fill the gradients of layers with activations between them, given the last output's."""
+    for below, layer in zip(activations[::-1], layers[:0:-1], strict=True):
+        layer.backward(below.output, gradient)
+        gradient = below.backward(layer.backward_input(gradient))
+    layers[0].backward(x, gradient)

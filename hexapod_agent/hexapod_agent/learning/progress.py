@@ -1,0 +1,65 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""How far a training is: a bar on a terminal, a line now and then into a file or a pipe."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+from hexapod_agent.learning.metrics import SATURATED_SHARE
+from hexapod_agent.learning.summary import EpisodeSummary
+
+Report = Callable[[EpisodeSummary], None]
+
+_LINE_S = 30.0
+
+
+@contextmanager
+def episode_report(name: str, done: int, episodes: int) -> Iterator[Report]:
+    """Yield what tells of an episode, as long as the context lasts.
+
+    Args:
+        name: Of the run.
+        done: Episodes that it has had already.
+        episodes: Its length.
+    """
+    console = Console()
+    if not console.is_terminal:
+        yield _lines(name, episodes)
+        return
+    progress = Progress(
+        TextColumn('{task.description}'), BarColumn(), MofNCompleteColumn(),
+        TimeRemainingColumn(), TextColumn('{task.fields[status]}'), console=console,
+    )  # fmt: skip
+    with progress:
+        task = progress.add_task(name, total=episodes, completed=done, status='')
+        yield lambda summary: progress.update(
+            task, completed=summary.episode + 1, status=_status(summary)
+        )
+
+
+def _lines(name: str, episodes: int) -> Report:
+    """Return what prints the first episode, the last one, and one every half minute."""
+    due = 0.0
+
+    def report(summary: EpisodeSummary) -> None:
+        nonlocal due
+        if time.monotonic() >= due or summary.episode + 1 == episodes:
+            due = time.monotonic() + _LINE_S
+            count = f'episode {summary.episode + 1} of {episodes}'
+            print(f'{name}: {count}, {_status(summary)}', flush=True)
+
+    return report
+
+
+def _status(summary: EpisodeSummary) -> str:
+    return (
+        f'return {summary.episode_return:.0f}, mean {summary.average_return:.0f}, '
+        f'saturated {summary.metrics[SATURATED_SHARE]:.0%}'
+    )

@@ -1,0 +1,210 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Node `agent`: offers the action `train_run` and accepts one run at a time."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+
+from diagnostic_msgs.msg import DiagnosticStatus
+from hexapod_interfaces.action import TrainRun
+from hexapod_interfaces.msg import CpgCommand, EpisodeResult
+from hexapod_node.actions import CoroutineActionServer
+from hexapod_node.coroutines import sleep
+from hexapod_node.diagnostics import Diagnostics, Health
+from hexapod_node.intra_process import LockStepPublisher
+from hexapod_node.node import Node
+from hexapod_node.parameters import Parameter, declare
+from hexapod_node.qos import LOCK_STEP
+from hexapod_node.root import READABLE, ROOT, Root
+from hexapod_node.shared_memory import free_abandoned
+from hexapod_node.spin import run
+from rclpy.action import CancelResponse, GoalResponse
+from rclpy.action.server import ServerGoalHandle
+
+from hexapod_agent.deployment.policies import trained_policy
+from hexapod_agent.learning import checkpoint, run_checkpoint
+from hexapod_agent.learning.checkpoint import CheckpointError
+from hexapod_agent.learning.player import Agent, Player
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.nodes.action_names import PLAY_RUN, TRAIN_RUN
+from hexapod_agent.nodes.graph_run import GraphRun, MakeTrainer, RunContext
+from hexapod_agent.nodes.peers import Peers
+from hexapod_agent.specification.observation import parse_observations
+from hexapod_agent.specification.run_spec import ConfigError, RunSpec
+
+PARAMETERS = (
+    Parameter('config', '', 'hyper-parameter file of runs that name none; empty: article.yaml'),
+    Parameter(
+        'timeout',
+        10.0,
+        'longest wait for a service, or for a topic to deliver its sample',
+        unit='s',
+        range=(0.1, 3600.0),
+    ),
+    Parameter(
+        'for_hire', True, f'whether campaigns may give it runs; if not, its action is {PLAY_RUN}'
+    ),
+    ROOT,
+    READABLE,
+)
+_MOST_EPISODES = 1_000_000
+
+
+class AgentNode(Node):
+    """Observes the topics of a run's set, acts through `cpg/command` and learns meanwhile."""
+
+    def __init__(self, make_trainer: MakeTrainer = Trainer, action: str = '') -> None:
+        """Offer the action.
+
+        Args:
+            make_trainer: what learns.
+            action: name of the action; empty for what the parameter `for_hire` says.
+        """
+        super().__init__('agent')
+        declare(self, PARAMETERS)
+        timeout_s = float(self.get_parameter('timeout').value)
+        self._run_context = RunContext(
+            self,
+            LockStepPublisher(self, CpgCommand, 'cpg/command'),
+            self.create_publisher(EpisodeResult, 'episode_result', LOCK_STEP),
+            Peers(self, timeout_s),
+            timeout_s,
+            make_trainer,
+        )
+        self._root = Root(self.get_parameter('root').value, self.get_parameter('readable').value)
+        self._run: GraphRun | None = None
+        self._reserved = False
+        self._last_error = ''
+        self._server = CoroutineActionServer(
+            self,
+            TrainRun,
+            action or (TRAIN_RUN if self.get_parameter('for_hire').value else PLAY_RUN),
+            self._train,
+            goal_callback=self._on_goal,
+            cancel_callback=lambda _: CancelResponse.ACCEPT,
+        )
+        Diagnostics(self, self._health)
+
+    def _on_goal(self, goal: TrainRun.Goal) -> GoalResponse:
+        """Accept a run unless one is under way."""
+        if self._reserved:
+            self.get_logger().warning(f'run {goal.run_id} refused: another run is under way')
+            return GoalResponse.REJECT
+        self._reserved = True
+        return GoalResponse.ACCEPT
+
+    async def _train(self, goal_handle: ServerGoalHandle) -> TrainRun.Result:
+        """Run one goal to its end, then make ready for the next."""
+        result = await self._execute(goal_handle)
+        # Leave the callback that brought the last sample before its subscription goes.
+        await sleep(self, 0.0)
+        ended, self._run = self._run, None
+        self._reserved = False
+        if ended is not None:
+            ended.destroy()
+        return result
+
+    async def _execute(self, goal_handle: ServerGoalHandle) -> TrainRun.Result:
+        """Run one goal; an error ends the run, not the node."""
+        goal = goal_handle.request
+        self._last_error = ''
+        try:
+            self._check(goal)
+            config, agent = self._loaded(goal)
+            self._run = GraphRun(self._run_context, goal_handle, config, agent)
+            return await self._run.execute()
+        except Exception as error:
+            self._last_error = f'run {goal.run_id}: {error}'
+            self.get_logger().error(self._last_error)
+            if goal_handle.is_active:
+                goal_handle.abort()
+            return TrainRun.Result(message=str(error))
+
+    def _check(self, goal: TrainRun.Goal) -> None:
+        """Make the goal's paths absolute.
+
+        Raises:
+            ValueError: one is not there, or not for a request to name; or there are too many
+                episodes.
+        """
+        if not 1 <= goal.episodes <= _MOST_EPISODES:
+            raise ValueError(f'episodes {goal.episodes}: expected 1 to {_MOST_EPISODES}')
+        for field in ('checkpoint', 'config'):
+            if given := getattr(goal, field):
+                path = self._root.readable(field, given)
+                if not path.is_file():
+                    raise ValueError(f"{field} '{path}' not found, expected a file")
+                setattr(goal, field, str(path))
+        if goal.bag:
+            goal.bag = str(self._root.inside('bag', goal.bag))
+
+    def _loaded(self, goal: TrainRun.Goal) -> tuple[RunSpec, Agent]:
+        """Return what the goal asks for, made of its files.
+
+        Raises:
+            ValueError: a file cannot be used. Why may quote it, so only this machine is told.
+        """
+        try:
+            return trained(goal) if goal.checkpoint else self._untrained(goal)
+        except (CheckpointError, ConfigError) as error:
+            _tell_this_machine(f'run {goal.run_id}: {error}')
+            files = [f"'{path}'" for path in (goal.checkpoint, goal.config) if path]
+            named = ' or '.join(files) or 'the configuration'
+            raise ValueError(f'{named}: cannot be used, this worker prints why') from None
+
+    def _untrained(self, goal: TrainRun.Goal) -> tuple[RunSpec, Trainer]:
+        config = RunSpec.load(goal.config or self.get_parameter('config').value)
+        config = config.observing(goal.observations)
+        return config, self._resumed(goal, config)
+
+    def _resumed(self, goal: TrainRun.Goal, config: RunSpec) -> Trainer:
+        """Return the trainer of the run's checkpoint, or one that begins."""
+        trainer = None
+        if goal.resume and goal.bag:
+            try:
+                trainer = run_checkpoint.resumed(goal.bag, config, goal.seed, goal.episodes)
+            except CheckpointError as error:
+                _tell_this_machine(f'run {goal.run_id}: {error}')
+                self.get_logger().warning(
+                    f'run {goal.run_id} begins anew: its checkpoint cannot be used'
+                )
+        return trainer or self._run_context.make_trainer(config, goal.seed)
+
+    def _health(self) -> Health:
+        if self._run is not None:
+            return DiagnosticStatus.OK, 'training', self._run.progress()
+        if self._last_error:
+            return DiagnosticStatus.ERROR, self._last_error, {}
+        return DiagnosticStatus.OK, 'waiting for a run', {}
+
+
+def _tell_this_machine(text: str) -> None:
+    """Write to this process's own output: the node's log goes to every peer."""
+    print(text, file=sys.stderr, flush=True)
+
+
+def trained(goal: TrainRun.Goal) -> tuple[RunSpec, Agent]:
+    """Return the agent of the goal's checkpoint, and the configuration that it plays in.
+
+    Raises:
+        ValueError: the checkpoint cannot be read, or observes other channels than the goal says.
+    """
+    trainer = checkpoint.load(goal.checkpoint)
+    config = trainer.config
+    if goal.observations and parse_observations(goal.observations) != config.letters:
+        raise ValueError(
+            f"observations '{goal.observations}': checkpoint '{goal.checkpoint}' observes "
+            f"'{config.letters}', expected the same or none"
+        )
+    if goal.config:
+        config = config.changed_by(goal.config)
+    return config, Player(trained_policy(trainer.agent), config.training.window)
+
+
+def main(args: Sequence[str] | None = None) -> None:
+    """Run the node until a signal comes."""
+    free_abandoned()
+    run(AgentNode, args)

@@ -1,0 +1,121 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The control periods of a run on the node graph: observe, command and learn in lock-step."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from hexapod_cpg.mapping import ACTION_SIZE, command_from_action
+from hexapod_cpg.nodes.messages import command_to_message
+from hexapod_interfaces.msg import CpgCommand, StepOutcome
+from hexapod_node.lock_step import LockStep
+from hexapod_node.raw_topics import message_class
+from hexapod_node.stamps import time_message
+from hexapod_sim.robot import CONTROL_PERIOD_NS
+from numpy.typing import NDArray
+
+from hexapod_agent.learning.player import Agent
+from hexapod_agent.nodes.messages import decode, outcome_from_message
+from hexapod_agent.specification.run_spec import RunSpec
+
+if TYPE_CHECKING:
+    from hexapod_node.intra_process import LockStepPublisher
+    from hexapod_node.stamp_gate import LockStepCounts
+    from rclpy.node import Node
+
+OUTCOME = 'step_outcome'
+
+
+class ControlLoop:
+    """An agent's part of every control period, subscribed to what it observes and to no more.
+
+    Attributes:
+        periods: Commands published so far.
+
+    Args:
+        node: Subscribes.
+        commands: Publishes `cpg/command`.
+        config: What is observed, and what an action means.
+        timeout_s: Longest wait for a topic's sample.
+    """
+
+    def __init__(
+        self, node: Node, commands: LockStepPublisher, config: RunSpec, timeout_s: float
+    ) -> None:
+        self._commands, self._spec, self._config = commands, config.observed, config
+        self._command = CpgCommand()
+        self._action = np.zeros(ACTION_SIZE, dtype=np.float32)
+        self.periods = 0
+        # The treatment: these topics and no other sensor.
+        topics = {
+            topic: message_class(channel.message_type)
+            for channel in self._spec.channels
+            for topic in channel.topics
+        }
+        self._lock_step = LockStep(
+            node, topics | {OUTCOME: StepOutcome}, CONTROL_PERIOD_NS, timeout_s
+        )
+
+    def destroy(self) -> None:
+        """Unsubscribe from every topic."""
+        self._lock_step.destroy()
+
+    @property
+    def topics(self) -> list[str]:
+        """Fully qualified names of what is subscribed."""
+        return self._lock_step.topics
+
+    @property
+    def counts(self) -> LockStepCounts:
+        """Departures from lock-step in this episode."""
+        return self._lock_step.counts
+
+    def make_ready(self) -> None:
+        """Keep what comes from here on for the next episode."""
+        self._lock_step.stop()
+        self._lock_step.counts.reset()
+        self._action = np.zeros(ACTION_SIZE, dtype=np.float32)
+
+    async def run_episode(self, agent: Agent, start_ns: int) -> int:
+        """Observe, act and learn once per period; return the stamp of the last one.
+
+        Args:
+            agent: whose episode has begun.
+            start_ns: stamp of the first observation.
+
+        Raises:
+            hexapod_node.lock_step.LockStepTimeoutError: a topic stayed silent.
+        """
+        self._lock_step.start(start_ns)
+        stamp_ns = start_ns
+        while True:
+            messages = await self._lock_step.next_period()
+            outcome = outcome_from_message(messages[OUTCOME])
+            observation = self._observe(messages)
+            if outcome.terminated or outcome.truncated:
+                agent.end_episode(observation, outcome)
+                return stamp_ns
+            self._action = agent.observe(observation, outcome)
+            self._publish_command(stamp_ns)
+            agent.learn()  # while the pattern generator and the sim are at work
+            stamp_ns += CONTROL_PERIOD_NS
+            self.periods += 1
+
+    def _observe(self, messages: Mapping[str, Any]) -> NDArray[Any]:
+        readings: dict[str, NDArray[Any]] = {}
+        for channel in self._spec.channels:
+            if channel.topics:
+                readings.update(decode(channel, messages))
+        return self._spec.assemble(readings, self._action)
+
+    def _publish_command(self, stamp_ns: int) -> None:
+        command = command_from_action(
+            self._action, self._config.cpg.reading, self._config.cpg.ranges
+        )
+        command_to_message(command, self._command)
+        self._command.header.stamp = time_message(stamp_ns)
+        self._commands.publish(self._command)

@@ -1,0 +1,299 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The specification of a run: everything that decides its results, apart from its seed.
+
+article.yaml holds every value with its origin. A file of one's own names only what it changes.
+YAML is the text form; a dotted key such as 'learner.actor.learning_rate' names one value.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any, Literal
+
+import yaml
+from hexapod_cpg.mapping import ActionRanges
+from hexapod_cpg.oscillator import HopfConfig
+from hexapod_sim.article import ARTICLE, article
+from hexapod_sim.command_line import CommandLine, file
+from hexapod_sim.sensor_table import LETTERS
+from hexapod_sim.task import TaskConfig
+from pydantic import TypeAdapter, ValidationError
+
+from hexapod_agent.algorithms.hyperparameters import LearnerConfig, TrainingConfig
+from hexapod_agent.specification.observation import ObservationSpec, parse_observations
+
+
+class ConfigError(ValueError):
+    """A specification cannot be used; the message names file, key and expectation."""
+
+
+@dataclass(frozen=True)
+class CpgConfig:
+    """The pattern generator and what an action asks of it.
+
+    Attributes:
+        hopf: Constants of the oscillators.
+        reading: Which command fields the five actions of a leg set.
+        ranges: What action zero and action one stand for.
+    """
+
+    hopf: HopfConfig
+    reading: Literal['D1', 'D2']
+    ranges: ActionRanges
+
+
+@dataclass(frozen=True)
+class RunSpec:
+    """A run's specification, frozen and nested.
+
+    Attributes:
+        observations: Whether the agent observes a channel, by its letter in the sensor table.
+        task: Reward, starts and limits.
+        cpg: The pattern generator.
+        learner: Algorithm and hyper-parameters.
+        training: The run around the updates.
+    """
+
+    observations: Mapping[str, bool]
+    task: TaskConfig
+    cpg: CpgConfig
+    learner: LearnerConfig
+    training: TrainingConfig
+
+    @property
+    def letters(self) -> str:
+        """Letters of the observed channels, sorted."""
+        return ''.join(sorted(letter for letter, on in self.observations.items() if on))
+
+    @property
+    def observed(self) -> ObservationSpec:
+        """What the agent observes, and in which order."""
+        return ObservationSpec(self.letters)
+
+    def to_mapping(self) -> dict[str, Any]:
+        """Return nested plain values, as `from_mapping` takes them."""
+        values = asdict(self)
+        values['observations'] = dict(self.observations)
+        return values
+
+    def to_text(self) -> str:
+        """Return the YAML text, as `from_text` takes it."""
+        plain = TypeAdapter(dict[str, Any]).dump_python(self.to_mapping(), mode='json')
+        return yaml.safe_dump(plain, sort_keys=False)
+
+    def differences(self, other: 'RunSpec') -> dict[str, tuple[Any, Any]]:
+        """Return the values of both, this one's first, by the dotted keys in which they differ."""
+        mine, its = flat(self.to_mapping()), flat(other.to_mapping())
+        return {key: (mine[key], its[key]) for key in mine if mine[key] != its[key]}
+
+    @classmethod
+    def from_mapping(cls, changes: Mapping[str, Any], source: str) -> 'RunSpec':
+        """Build a specification from article.yaml with some values changed.
+
+        Args:
+            changes: Sections with the keys to change; `observations` may be letters.
+            source: Where they come from, for messages.
+
+        Raises:
+            ConfigError: A section or key is unknown, or a value is not what it expects.
+        """
+        return _build(article(), changes, source)
+
+    @classmethod
+    def from_text(cls, text: str, source: str) -> 'RunSpec':
+        """Read YAML that changes values of article.yaml.
+
+        Raises:
+            ConfigError: As for `from_mapping`, or it is not YAML.
+        """
+        return cls.from_mapping(_parsed(text, source), source)
+
+    @classmethod
+    def load(cls, path: str | Path | None = None, settings: Iterable[str] = ()) -> 'RunSpec':
+        """Read a file that changes values of article.yaml; without one, article.yaml itself.
+
+        Args:
+            path: The file.
+            settings: Further changes, each as 'key=value' with a dotted key and a YAML value.
+
+        Raises:
+            ConfigError: The file is missing, is not YAML, or holds something unknown.
+        """
+        spec = cls.from_mapping(_changes(path) if path else {}, str(path or ARTICLE))
+        return spec.with_settings(settings)
+
+    def changed_by(self, path: str | Path) -> 'RunSpec':
+        """Read a file that changes values of this specification.
+
+        Raises:
+            ConfigError: As for `load`.
+        """
+        return self.changed(_changes(path), str(path))
+
+    def changed(self, changes: Mapping[str, Any], source: str) -> 'RunSpec':
+        """Build a specification from this one with some values changed, as `from_mapping` does."""
+        return _build(self.to_mapping(), changes, source)
+
+    def with_settings(self, settings: Iterable[str]) -> 'RunSpec':
+        """Return a specification with single values changed, each given as 'key=value'.
+
+        Raises:
+            ConfigError: A text is not of this form, a key is unknown, or a value is not allowed.
+        """
+        spec = self
+        for setting in settings:
+            key, mark, value = setting.partition('=')
+            if not (key and mark):
+                raise ConfigError(f'--set {setting}: expected key=value, such as task.line_y=0.1')
+            source = f'--set {setting}'
+            spec = spec.with_value(key, _parsed_value(value, source), source)
+        return spec
+
+    def with_value(self, key: str, value: Any, source: str) -> 'RunSpec':
+        """Return a specification with one value changed, by its dotted key.
+
+        Raises:
+            ConfigError: The key is unknown, or the value is not allowed.
+        """
+        for name in reversed(key.split('.')):
+            value = {name: value}
+        return self.changed(value, source)
+
+    def value(self, key: str) -> Any:
+        """Return one value by its dotted key.
+
+        Raises:
+            ConfigError: The key is unknown.
+        """
+        values = flat(self.to_mapping())
+        found = key if key in values else f'learner.{key}'  # as keys were before
+        if found not in values:
+            raise ConfigError(f'unknown key {key!r}, expected one of {", ".join(values)}')
+        return values[found]
+
+    def observing(self, letters: str) -> 'RunSpec':
+        """Return this specification with another set of observed channels.
+
+        Raises:
+            ValueError: A letter names no channel.
+        """
+        return self.changed({'observations': parse_observations(letters)}, 'observations')
+
+
+# Sections of the layout before there was one for the learner, of bags and checkpoints.
+_OF_THE_LEARNER = ('actor', 'critic', 'ddpg', 'noise')
+
+
+def _build(base: Mapping[str, Any], changes: Any, source: str) -> RunSpec:
+    """Validate a base with changes.
+
+    Raises:
+        ConfigError: See `RunSpec.from_mapping`.
+    """
+    if not isinstance(changes, Mapping):
+        raise ConfigError(f'{source}: expected sections with keys, as article.yaml has them')
+    changes = _modern(changes)
+    if isinstance(changes.get('observations'), str):
+        chosen = parse_observations(changes['observations'])
+        changes['observations'] = {letter: letter in chosen for letter in LETTERS}
+    _check_keys(base, changes, source, '')
+    try:
+        spec: RunSpec = TypeAdapter(RunSpec).validate_python(_merged(base, changes))
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = '.'.join(str(part) for part in first['loc'])
+        raise ConfigError(
+            f'{source}: {key} is {first["input"]!r}, expected: {first["msg"]}'
+        ) from error
+    try:
+        _ = spec.learner.ddpg.group_size
+    except ValueError as error:
+        raise ConfigError(f'{source}: {error}') from error
+    return spec
+
+
+def _modern(changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return changes in today's layout: a learner's own sections stand in its section."""
+    moved = {name: changes[name] for name in _OF_THE_LEARNER if name in changes}
+    if not moved:
+        return dict(changes)
+    kept = {name: value for name, value in changes.items() if name not in moved}
+    return _merged(kept, {'learner': moved})
+
+
+def _changes(path: str | Path) -> Any:
+    """Read a file of changes."""
+    file = Path(path).expanduser()
+    if not file.is_file():
+        raise ConfigError(
+            f'config file {str(path)!r} not found, expected a YAML file with sections of '
+            f'{", ".join(field.name for field in fields(RunSpec))}'
+        )
+    try:
+        text = file.read_text(encoding='utf-8')
+    except UnicodeDecodeError as error:
+        raise ConfigError(f'{path}: not YAML: not UTF-8 text') from error
+    return _parsed(text, str(path))
+
+
+def _parsed(text: str, source: str) -> Any:
+    """Parse YAML; an empty text changes nothing."""
+    return _parsed_value(text, source) or {}
+
+
+def _parsed_value(text: str, source: str) -> Any:
+    try:
+        return yaml.safe_load(text)
+    except yaml.YAMLError as error:
+        raise ConfigError(f'{source}: not YAML: {error}') from error
+
+
+def _check_keys(base: Mapping[str, Any], changes: Any, source: str, prefix: str) -> None:
+    """Refuse keys that the base, or a section of it, does not have."""
+    if not isinstance(changes, Mapping):
+        raise ConfigError(f'{source}: {prefix.rstrip(".")} is {changes!r}, expected keys')
+    for key, value in changes.items():
+        if key not in base:
+            raise ConfigError(
+                f'{source}: unknown key {f"{prefix}{key}"!r}, expected one of {", ".join(base)}'
+            )
+        if isinstance(base[key], Mapping):
+            _check_keys(base[key], value, source, f'{prefix}{key}.')
+
+
+def add_spec_options(parser: CommandLine) -> None:
+    """Give a command line the options that say what a run is, for `RunSpec.load`."""
+    parser.add_argument(
+        '--config',
+        '--hyperparameters',  # its name before the sensors were in it
+        type=file,
+        metavar='FILE',
+        help='YAML file of changes to article.yaml',
+    )
+    parser.add_argument(
+        '--set',
+        action='append',
+        default=[],
+        metavar='KEY=VALUE',
+        help='one further change, such as learner.actor.learning_rate=2e-4; may be repeated',
+    )
+
+
+def flat(mapping: Mapping[str, Any], prefix: str = '') -> dict[str, Any]:
+    """Return nested values by their dotted keys."""
+    values: dict[str, Any] = {}
+    for key, value in mapping.items():
+        nested = flat(value, f'{prefix}{key}.') if isinstance(value, Mapping) else None
+        values |= nested if nested is not None else {f'{prefix}{key}': value}
+    return values
+
+
+def _merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return `base` with the values of `changes`, section by section."""
+    merged = dict(base)
+    for key, value in changes.items():
+        nested = isinstance(value, Mapping) and isinstance(merged.get(key), Mapping)
+        merged[key] = _merged(merged[key], value) if nested else value
+    return merged

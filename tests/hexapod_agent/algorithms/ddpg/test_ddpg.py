@@ -1,0 +1,292 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""One update is the textbook's, computed here by autograd; the switches do what they name."""
+
+import numpy as np
+import pytest
+import torch
+from hexapod_agent.algorithms.ddpg.ddpg import Ddpg
+from hexapod_agent.algorithms.ddpg.networks import Actor, Critic
+from hexapod_agent.algorithms.ddpg.parameters import ParameterStack
+from hexapod_agent.algorithms.hyperparameters import ActorConfig, CriticConfig
+from hexapod_agent.algorithms.replay import Batch
+from hexapod_agent.deployment.policies import trained_policy
+
+SIZES = (5, 3)
+BATCH = 16
+
+
+def make(
+    agents: int = 1,
+    seed: int = 0,
+    batch: int = BATCH,
+    rate: float = 1e-2,
+    value: float = 0.0,
+    observations: int = SIZES[0],
+    twin: bool = False,
+    **actor,
+) -> Ddpg:
+    values = {
+        'hidden': (20, 10), 'learning_rate': rate, 'l2': 0.0, 'gradient_threshold': 1e9,
+        'preactivation_penalty': 0.0, 'normalize_loss': False, 'layer_norm': False,
+    }  # fmt: skip
+    return Ddpg(
+        observations,
+        SIZES[1],
+        ActorConfig(**values | actor),
+        CriticConfig((20, 10), 'add', value, rate, 0.0, 1e9, False, twin),
+        batch,
+        target_smoothing=0.1,
+        generator=torch.Generator().manual_seed(seed),
+        agents=agents,
+        dtype=torch.float64,
+    )
+
+
+def empty(agents: int = 1, batch: int = BATCH, observations: int = SIZES[0]) -> Batch:
+    return Batch.empty(agents, batch, observations, SIZES[1], torch.float64)
+
+
+def fill(agent: Ddpg, agents: int = 1, seed: int = 0) -> Batch:
+    """Draw the agents' output layers, and return transitions for each of them."""
+    generator = torch.Generator().manual_seed(seed)
+    batch = empty(agents)
+    for tensor in vars(batch).values():
+        tensor.uniform_(-1, 1, generator=generator)
+    # Larger weights than the initial ones, so that no term of the update is negligible.
+    for parameters in (agent.actor_parameters, agent.critic_parameters):
+        for name, array in parameters.arrays.items():
+            if name.startswith('output'):
+                array.uniform_(-0.5, 0.5, generator=generator)
+    return batch
+
+
+def forward(network: type, parameters: ParameterStack, *inputs: torch.Tensor) -> torch.Tensor:
+    """Differentiable forward pass, written once more for the reference."""
+    arrays = parameters
+    x = inputs[0]
+    if network is Actor:
+        for layer in ('hidden0', 'hidden1'):
+            x = (x @ arrays[f'{layer}.weight'].T + arrays[f'{layer}.bias']).relu()
+        return x @ arrays['output.weight'].T + arrays['output.bias']
+    x = (x @ arrays['observation0.weight'].T + arrays['observation0.bias']).relu()
+    x = x @ arrays['observation1.weight'].T + arrays['observation1.bias']
+    x = (x + inputs[1] @ arrays['action.weight'].T + arrays['action.bias']).relu()
+    return x @ arrays['output.weight'].T + arrays['output.bias']
+
+
+def leaves(parameters: ParameterStack) -> dict[str, torch.Tensor]:
+    return {name: a[0].clone().requires_grad_() for name, a in parameters.arrays.items()}
+
+
+def adam(arrays: dict[str, torch.Tensor], loss: torch.Tensor) -> None:
+    optimizer = torch.optim.Adam(arrays.values(), lr=1e-2)
+    loss.backward()
+    optimizer.step()
+
+
+@pytest.mark.parametrize(
+    ('penalty', 'normalize', 'twin'), [(0.0, False, False), (0.02, True, False), (0.0, True, True)]
+)
+def test_update_is_that_of_autograd(penalty, normalize, twin):
+    agent = make(preactivation_penalty=penalty, normalize_loss=normalize, twin=twin)
+    batch = fill(agent).inner(0)
+    actor, critic = leaves(agent.actor_parameters), leaves(agent.critic_parameters)
+    # The targets still have the initial weights; take them from the state.
+    state = {name: value.clone() for name, value in stacks_of(agent).items()}
+    critics = [name for name in ('critic', 'twin_critic') if name in state]
+    assert len(critics) == 1 + twin
+    parts = {'actor': agent.actor_parameters} | dict.fromkeys(critics, agent.critic_parameters)
+    targets = {
+        name: {key: array[0] for key, array in with_numbers(like, state[f'target_{name}']).items()}
+        for name, like in parts.items()
+    }
+
+    statistics = agent.update(batch)
+
+    next_action = forward(Actor, targets['actor'], batch.next_observation).tanh()
+    values = [forward(Critic, targets[n], batch.next_observation, next_action) for n in critics]
+    target = batch.reward + batch.bootstrap * torch.stack(values).amin(dim=0)
+    losses = []
+    learned = {'critic': critic}
+    if twin:
+        assert not torch.equal(*values)
+        learned['twin_critic'] = {
+            key: array[0].clone().requires_grad_()
+            for key, array in with_numbers(agent.critic_parameters, state['twin_critic']).items()
+        }
+    for arrays in learned.values():
+        value = forward(Critic, arrays, batch.observation, batch.action)
+        losses.append(torch.nn.functional.mse_loss(value, target))
+        adam(arrays, losses[-1])
+    critic_loss = torch.stack(losses).mean()
+    z = forward(Actor, actor, batch.observation)
+    value = forward(
+        Critic, {k: a.detach() for k, a in critic.items()}, batch.observation, z.tanh()
+    )
+    scale = value.detach().abs().mean() if normalize else 1.0
+    actor_loss = -value.mean() / scale + penalty * (z * z).mean()
+    adam(actor, actor_loss)
+
+    assert statistics.critic_loss.item() == pytest.approx(critic_loss.item())
+    assert statistics.actor_loss.item() == pytest.approx(actor_loss.item())
+    assert statistics.mean_q.item() == pytest.approx(value.mean().item())
+    now = stacks_of(agent)
+    for part, expected in (('actor', actor), *learned.items()):
+        for name, array in with_numbers(parts[part], now[part]).items():
+            torch.testing.assert_close(array[0], expected[name].detach(), rtol=1e-9, atol=1e-12)
+    for part in parts:
+        target = f'target_{part}'
+        moved = state[target] + 0.1 * (now[part] - state[target])
+        torch.testing.assert_close(now[target], moved)
+
+
+def test_agents_of_a_stack_do_not_touch_one_another():
+    """The first agent learns the same whatever the second one sees."""
+    stacks = []
+    for seed in (1, 2):
+        agent = make(agents=2)
+        batch = fill(agent, agents=2)
+        for tensor in vars(batch).values():
+            tensor[1].uniform_(-1, 1, generator=torch.Generator().manual_seed(seed))
+        for _ in range(3):
+            agent.update(batch)
+        stacks.append(agent)
+    first, second = stacks
+    assert torch.equal(first.actor_parameters.flat[0], second.actor_parameters.flat[0])
+    assert not torch.equal(first.actor_parameters.flat[1], second.actor_parameters.flat[1])
+
+
+def test_a_stack_learns_what_single_agents_learn():
+    stack, single = make(agents=2), make()
+    batch = fill(stack, agents=2)
+    for name, part in single.state_dict().items():
+        if not name.endswith('optimizer'):
+            part.copy_(stack.state_dict()[name][:1])
+    for _ in range(3):
+        stack.update(batch)
+        single.update(batch.inner(0))
+    torch.testing.assert_close(stack.actor_parameters.flat[:1], single.actor_parameters.flat)
+
+
+def test_only_the_agents_that_learn_are_moved():
+    stack = make(agents=3)
+    batch = fill(stack, agents=3)
+    before = {name: part.clone() for name, part in stacks_of(stack).items()}
+    stack.learn_only([0, 2])
+    stack.update(batch)
+    for name, part in stacks_of(stack).items():
+        moved = [not torch.equal(part[agent], before[name][agent]) for agent in range(3)]
+        assert moved == [True, False, True], name
+
+
+def test_an_agent_put_in_a_wider_stack_learns_as_alone():
+    single, stack = make(), make(agents=2, observations=SIZES[0] + 4)
+    narrow, wide = fill(single), empty(agents=2, observations=SIZES[0] + 4)
+    stack.put(1, single)
+    for ours, theirs in zip(vars(wide).values(), vars(narrow).values(), strict=True):
+        ours[1, :, : theirs.shape[-1]] = theirs[0]
+    for _ in range(3):
+        stack.update(wide)
+        single.update(narrow.inner(0))
+    taken = make(seed=1)
+    stack.take(1, taken)
+    for name, part in stacks_of(single).items():
+        torch.testing.assert_close(stacks_of(taken)[name], part)
+
+
+def stacks_of(agent: Ddpg) -> dict[str, torch.Tensor]:
+    """Networks and targets of a state."""
+    return {name: part for name, part in agent.state_dict().items() if 'optimizer' not in name}
+
+
+def with_numbers(like: ParameterStack, flat: torch.Tensor) -> dict[str, torch.Tensor]:
+    """Arrays of a state's flat tensor."""
+    stack = like.like()
+    stack.flat.copy_(flat)
+    return stack.arrays
+
+
+def test_preactivation_penalty_keeps_actions_off_the_bounds():
+    """A critic that always wants more drives an unpenalised actor to the bound."""
+    outputs = {}
+    for penalty in (0.0, 0.3):
+        agent = make(preactivation_penalty=penalty)
+        batch = fill(agent).inner(0)
+        batch.bootstrap.zero_()
+        generator = torch.Generator().manual_seed(1)
+        for _ in range(1500):
+            batch.action.uniform_(-1, 1, generator=generator)
+            batch.reward.copy_(batch.action.sum(dim=-1, keepdim=True))
+            agent.update(batch)
+        outputs[penalty] = agent.act(batch.observation[:1]).abs().mean().item()
+    assert outputs[0.0] > 0.99
+    assert outputs[0.3] < 0.95
+
+
+def test_learns_the_best_action_of_each_state():
+    """One-step problem: reward -|a - s|², so the best action is the state's first numbers."""
+    agent = make(batch=64, rate=2e-3)
+    generator = torch.Generator().manual_seed(0)
+    batch = empty(batch=64).inner(0)
+    for _ in range(3000):
+        batch.observation.uniform_(-0.8, 0.8, generator=generator)
+        batch.action.uniform_(-1, 1, generator=generator)
+        error = batch.action - batch.observation[..., :3]
+        batch.reward.copy_(-(error * error).sum(dim=-1, keepdim=True))
+        agent.update(batch)
+    error = torch.cat(
+        [agent.act(observation[None]) - observation[:3] for observation in batch.observation]
+    )
+    # A constant action would miss by 0.46, the standard deviation of U(-0.8, 0.8).
+    assert error.square().mean().sqrt() < 0.15
+
+
+def test_same_seed_same_weights():
+    first, second, other = make(seed=3), make(seed=3), make(seed=4)
+    assert torch.equal(first.actor_parameters.flat, second.actor_parameters.flat)
+    assert torch.equal(first.critic_parameters.flat, second.critic_parameters.flat)
+    assert not torch.equal(first.actor_parameters.flat, other.actor_parameters.flat)
+
+
+def test_initial_value_is_that_of_every_state_and_of_the_target():
+    agent = make(value=50.0)
+    for part in ('critic', 'target_critic'):
+        stack = agent.critic_parameters.like()
+        stack.flat.copy_(agent.state_dict()[part])
+        assert stack.arrays['output.bias'].item() == pytest.approx(50.0, abs=5e-3)
+    batch = empty().inner(0)
+    batch.bootstrap.fill_(0.5)
+    # TD error Q - (r + Q'/2) = 25 but for what the small output weights add.
+    assert agent.update(batch).critic_loss.item() == pytest.approx(625.0, rel=0.01)
+
+
+@pytest.mark.parametrize('fails', [False, True])
+def test_denormal_numbers_survive_outside_an_update(fails, monkeypatch):
+    """Flushing is a state of the thread, in which the physics may run as well."""
+    agent = make()
+    if fails:
+        monkeypatch.setattr(agent, '_update_critic', lambda _batch: 1 / 0)
+        with pytest.raises(ZeroDivisionError):
+            agent.update(empty().inner(0))
+    else:
+        agent.update(empty().inner(0))
+    assert torch.tensor(1e-310, dtype=torch.float64) * 0.5 > 0
+
+
+def test_the_policy_in_numpy_is_the_actor(make_trainer, switched_config):
+    """With normalised layers; without them an exported policy is held against it, too."""
+    trainer = make_trainer(config=switched_config)
+    trainer.agent.actor_parameters.flat.mul_(8.0)
+    scale = trainer.agent.scale
+    generator = np.random.default_rng(0)
+    for _ in range(5):
+        scale.add(generator.uniform(-1.0, 1.0, trainer.spec.size).astype(np.float32))
+    scale.refresh()
+    observation = np.linspace(-1.0, 1.0, trainer.spec.size, dtype=np.float32)
+    action = trained_policy(trainer.agent)(observation)
+    inputs = torch.from_numpy(observation)[None].clone()
+    scale.scale(inputs)
+    assert not np.allclose(inputs[0], observation)
+    torch.testing.assert_close(trainer.agent.act(inputs)[0], torch.from_numpy(action))

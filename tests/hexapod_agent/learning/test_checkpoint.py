@@ -1,0 +1,237 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""A resumed run is the uninterrupted one to the last bit; a broken file is refused by name."""
+
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from hexapod_agent.environment.env import HexapodLine
+from hexapod_agent.learning import checkpoint
+from hexapod_agent.train import train_episode
+
+AGENTS = Path(__file__).parents[3] / 'ros_ws' / 'src' / 'hexapod_bringup' / 'agents'
+
+
+def advance(trainer, episodes: int) -> None:
+    env = HexapodLine(trainer.spec.letters, trainer.config)
+    for _ in range(episodes):
+        train_episode(env, trainer)
+
+
+def flatten(value, prefix=''):
+    """Every leaf of a nested state, by path."""
+    if isinstance(value, dict):
+        for key, part in value.items():
+            yield from flatten(part, f'{prefix}/{key}')
+    else:
+        yield prefix, value
+
+
+def assert_same(first, second) -> None:
+    left, right = (dict(flatten(t.state_dict(to_resume=True))) for t in (first, second))
+    assert left.keys() == right.keys()
+    for path, value in left.items():
+        if isinstance(value, torch.Tensor):
+            assert torch.equal(value, right[path]), path
+        else:
+            assert value == right[path], path
+
+
+@pytest.mark.parametrize('name', ['small_config', 'switched_config'])
+def test_resumed_run_equals_the_uninterrupted_one(make_trainer, tmp_path, request, name):
+    config = request.getfixturevalue(name)
+    whole = make_trainer(config=config)
+    advance(whole, 4)
+    part = make_trainer(config=config)
+    advance(part, 2)
+    checkpoint.save(tmp_path / 'a.pt', part, to_resume=True)
+    resumed = checkpoint.load(tmp_path / 'a.pt')
+    advance(resumed, 2)
+    assert resumed.returns == whole.returns
+    assert_same(resumed, whole)
+
+
+def test_kill_in_mid_episode_repeats_that_episode(make_trainer, tmp_path):
+    whole = make_trainer()
+    advance(whole, 3)
+    killed = make_trainer()
+    advance(killed, 2)
+    checkpoint.save(tmp_path / 'a.pt', killed, to_resume=True)
+    # Ten steps into the third episode the process dies; only the file remains.
+    env = HexapodLine('BC', killed.config)
+    seen, _ = env.reset(seed=killed.seed, options={'episode': 2})
+    killed.begin_episode(2)
+    for _ in range(10):
+        action = killed.observe(seen, env.outcome)
+        killed.learn()
+        seen = env.step(action)[0]
+    resumed = checkpoint.load(tmp_path / 'a.pt')
+    advance(resumed, 1)
+    assert_same(resumed, whole)
+
+
+def test_small_checkpoint_acts_alike(make_trainer, tmp_path):
+    trainer = make_trainer()
+    advance(trainer, 1)
+    checkpoint.save(tmp_path / 'small.pt', trainer, to_resume=False)
+    checkpoint.save(tmp_path / 'large.pt', trainer, to_resume=True)
+    assert (tmp_path / 'small.pt').stat().st_size < (tmp_path / 'large.pt').stat().st_size
+    loaded = checkpoint.load(tmp_path / 'small.pt')
+    seen = torch.rand(1, trainer.spec.size)
+    assert torch.equal(loaded.agent.act(seen), trainer.agent.act(seen))
+    assert (loaded.seed, loaded.spec.letters, loaded.config) == (5, 'BC', trainer.config)
+    with pytest.raises(checkpoint.CheckpointError, match='holds an agent alone, expected a run'):
+        checkpoint.load(tmp_path / 'small.pt', to_resume=True)
+
+
+def test_failed_write_leaves_the_old_file(make_trainer, tmp_path, monkeypatch):
+    path = tmp_path / 'a.pt'
+    trainer = make_trainer()
+    checkpoint.save(path, trainer, to_resume=False)
+    before = path.read_bytes()
+
+    def fail(content, file):
+        file.write(b'part')
+        raise OSError('disk full')
+
+    monkeypatch.setattr(torch, 'save', fail)
+    with pytest.raises(checkpoint.CheckpointError, match=r'a.pt.*cannot be written: disk full'):
+        checkpoint.save(path, trainer, to_resume=False)
+    assert path.read_bytes() == before
+
+
+def write_unsealed(path, trainer) -> None:
+    """Write a checkpoint as it was written before files had a seal."""
+    content = {
+        'format': 'hexapod-checkpoint-1',
+        'observations': trainer.spec.letters,
+        'seed': trainer.seed,
+        'config': trainer.config.to_mapping(),
+        'state': trainer.state_dict(to_resume=True),
+    }
+    torch.save(content, path)
+
+
+def mutated(content: bytes, rng: np.random.Generator) -> bytes:
+    """Return a file's content with one fault of a disk or a transfer."""
+    at, length = int(rng.integers(len(content))), int(rng.integers(1, 5000))
+    kind = rng.choice(['flip', 'cut', 'zero', 'insert', 'remove', 'swap'])
+    if kind == 'flip':
+        return content[:at] + bytes([content[at] ^ 1 << rng.integers(8)]) + content[at + 1 :]
+    if kind == 'cut':
+        return content[:at]
+    if kind == 'zero':
+        return content[:at] + bytes(len(content[at : at + length])) + content[at + length :]
+    if kind == 'insert':
+        return content[:at] + rng.bytes(length) + content[at:]
+    if kind == 'remove':
+        return content[:at] + content[at + length :]
+    other = int(rng.integers(len(content)))
+    first, second = sorted((at, other))
+    blocks = content[first : first + 512], content[second : second + 512]
+    if second - first < 512 or len(blocks[1]) < 512:
+        return content + b'\n'
+    between, rest = content[first + 512 : second], content[second + 512 :]
+    return content[:first] + blocks[1] + between + blocks[0] + rest
+
+
+def loaded_or_refused(path):
+    """Return the trainer of a checkpoint, and why there is none."""
+    try:
+        return checkpoint.load(path, to_resume=True), ''
+    except checkpoint.CheckpointError as error:
+        return None, str(error)
+
+
+def check_mutations(path, trainer, count: int) -> int:
+    """Load a checkpoint after each of many faults; return how many were refused."""
+    content, rng, refused = path.read_bytes(), np.random.default_rng(1), 0
+    for _ in range(count):
+        path.write_bytes(mutated(content, rng))
+        loaded, reason = loaded_or_refused(path)
+        if loaded is None:
+            assert str(path) in reason
+            assert '\n' not in reason
+            refused += 1
+        else:
+            assert_same(loaded, trainer)
+    return refused
+
+
+@pytest.mark.parametrize('count', [60, pytest.param(1500, marks=pytest.mark.slow)])
+@pytest.mark.parametrize('write', [checkpoint.save, write_unsealed])
+def test_damage_is_refused_or_harmless(make_trainer, tmp_path, write, count):
+    trainer = make_trainer()
+    advance(trainer, 2)
+    path = tmp_path / 'a.pt'
+    write(path, trainer, *[True] * (write is checkpoint.save))
+    # A file without a seal has bytes that no checksum covers, and nothing reads.
+    least = 0.95 if write is checkpoint.save else 0.5
+    assert check_mutations(path, trainer, count) >= least * count
+
+
+@pytest.mark.parametrize('share', [0.0, 0.3, 0.99])
+def test_truncated_file_is_refused(make_trainer, tmp_path, share):
+    path = tmp_path / 'a.pt'
+    checkpoint.save(path, make_trainer(), to_resume=False)
+    content = path.read_bytes()
+    path.write_bytes(content[: int(share * len(content))])
+    with pytest.raises(checkpoint.CheckpointError, match=r'a.pt.*expected a whole file'):
+        checkpoint.load(path)
+
+
+@pytest.mark.parametrize('cut', [1, 40, 81])
+def test_a_lost_seal_does_not_make_an_old_file(make_trainer, tmp_path, cut):
+    path = tmp_path / 'a.pt'
+    checkpoint.save(path, make_trainer(), to_resume=False)
+    path.write_bytes(path.read_bytes()[:-cut])
+    with pytest.raises(checkpoint.CheckpointError, match=r'a.pt.*is damaged'):
+        checkpoint.load(path)
+
+
+def test_files_of_before_the_seal_still_load(make_trainer, tmp_path):
+    trainer = make_trainer()
+    advance(trainer, 2)
+    write_unsealed(tmp_path / 'old.pt', trainer)
+    assert_same(checkpoint.load(tmp_path / 'old.pt', to_resume=True), trainer)
+    shipped = checkpoint.load(AGENTS / 'ABCDE.pt')
+    assert (shipped.spec.letters, shipped.episode) == ('ABCDE', 300)
+
+
+def test_configuration_of_another_version_is_refused(make_trainer, tmp_path, monkeypatch):
+    path = tmp_path / 'a.pt'
+    trainer = make_trainer()
+    content = trainer.config.to_mapping()
+    content['learner']['ddpg']['momentum'] = 0.9
+    monkeypatch.setattr(type(trainer.config), 'to_mapping', lambda config: content)
+    checkpoint.save(path, trainer, to_resume=False)
+    with pytest.raises(
+        checkpoint.CheckpointError, match=r"a.pt.*cannot be used.*'learner.ddpg.momentum'"
+    ):
+        checkpoint.load(path)
+
+
+def test_missing_and_foreign_files_are_refused(tmp_path):
+    with pytest.raises(checkpoint.CheckpointError, match=r'no.pt.*not found'):
+        checkpoint.load(tmp_path / 'no.pt')
+    torch.save({'weights': torch.zeros(1)}, tmp_path / 'other.pt')
+    with pytest.raises(checkpoint.CheckpointError, match='expected format'):
+        checkpoint.load(tmp_path / 'other.pt')
+
+
+class Payload:
+    def __reduce__(self):
+        return (exec, ('raise SystemExit("code ran")',))
+
+
+def test_code_in_a_file_does_not_run(tmp_path):
+    (tmp_path / 'evil.pt').write_bytes(pickle.dumps(Payload(), protocol=2))
+    with pytest.raises(checkpoint.CheckpointError, match='cannot be read'):
+        checkpoint.load(tmp_path / 'evil.pt')
+    torch.save({'format': Payload()}, tmp_path / 'evil2.pt')
+    with pytest.raises(checkpoint.CheckpointError, match='cannot be read'):
+        checkpoint.load(tmp_path / 'evil2.pt')
