@@ -3,11 +3,12 @@
 
 """Coroutines are resumed by the event that they wait for, and cost nothing while they wait."""
 
+import threading
 import time
 
 import pytest
 from hexapod_interfaces.srv import ResetEpisode
-from hexapod_node.coroutines import ServiceUnavailableError, call, sleep, start, until
+from hexapod_node.coroutines import ServiceUnavailableError, call, in_thread, sleep, start, until
 from rclpy.task import Future
 
 pytestmark = pytest.mark.graph
@@ -51,3 +52,26 @@ def test_a_service_without_a_server_is_named(graph) -> None:
     graph.until(done.done)
     with pytest.raises(ServiceUnavailableError, match=r'/sim/reset: no server within 0.3 s'):
         done.result()
+
+
+def test_timers_go_on_while_the_work_does(graph) -> None:
+    node = graph.nodes[0]
+    gate = threading.Event()
+    ticks: list[int] = []
+
+    def tick() -> None:
+        ticks.append(len(ticks))
+        if len(ticks) == 5:
+            gate.set()
+
+    node.create_timer(0.01, tick)
+    assert graph.result(start(in_thread(node, lambda: gate.wait(10.0))))
+    assert len(ticks) >= 5
+
+
+def test_error_of_the_work_is_raised_where_it_is_awaited(graph) -> None:
+    def fail() -> None:
+        raise OSError('disk full')
+
+    with pytest.raises(OSError, match='disk full'):
+        graph.result(start(in_thread(graph.nodes[0], fail)))

@@ -114,3 +114,24 @@ def test_a_parameter_of_an_unknown_type_ends_a_node() -> None:
     mended = 'rclpy answers for unknown types: hexapod_node/upstream.py may go'
     assert 'answered' not in done.stdout, mended
     assert 'is not a valid' in done.stderr, mended
+
+
+ERRORS = """
+import rclpy
+from hexapod_node.upstream import RCLError
+from rclpy.node import Node
+from std_msgs.msg import String
+
+rclpy.init()
+node = Node('gone')
+publisher = node.create_publisher(String, 'topic', 1)
+rclpy.shutdown()
+try:
+    publisher.publish(String())
+except RCLError as error:
+    print('RCLError', error)
+"""
+
+
+def test_rclpy_raises_the_error_that_has_no_public_name_where_its_context_is_gone() -> None:
+    assert python(ERRORS).stdout.startswith('RCLError')

@@ -12,9 +12,9 @@ from hexapod_node.node import Node
 from hexapod_node.parameters import ConfigParameters, Parameter, declare
 from hexapod_node.spin import run
 from hexapod_node.sync import REALTIME, SYNC, max_age, phase
+from hexapod_node.upstream import RCLError
 from hexapod_sim.robot import NO_LOAD_SPEED
 from lifecycle_msgs.srv import ChangeState
-from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from rclpy.parameter import Parameter as RclpyParameter
 
@@ -119,7 +119,7 @@ class CpgNode(Node, LifecycleNode):
         ) -> ChangeState.Response:
             try:
                 return change(request, response)
-            except rclpy_implementation.RCLError:
+            except RCLError:
                 wanted = request.transition.label or request.transition.id
                 self.get_logger().error(
                     f'transition {wanted} refused: the state does not have it, expected one of '

@@ -25,6 +25,7 @@ from rclpy.task import Future
 
 from hexapod_node.handlers import failed
 from hexapod_node.timers import call_later, call_soon
+from hexapod_node.upstream import answer_later
 
 STEADY = Clock(clock_type=ClockType.STEADY_TIME)
 _POLL_S = 0.005
@@ -159,12 +160,9 @@ def create_coroutine_service(node: Node, kind: type, name: str, handler: Handler
     )
     send = service.send_response
 
-    def send_when_done(done: Future, header: Any) -> None:
-        done.add_done_callback(lambda future: answer(future, header))
-
     def answer(future: Future, header: Any) -> None:
         error = future.exception()
         send(failed(node, kind, name, error) if error else future.result(), header)
 
-    service.send_response = send_when_done  # type: ignore[method-assign, assignment]
+    answer_later(service, answer)
     return service

@@ -16,7 +16,6 @@ import rclpy
 from rclpy.exceptions import ParameterException
 from rclpy.executors import Executor, ExternalShutdownException
 from rclpy.experimental.events_executor import EventsExecutor
-from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.utilities import remove_ros_args
 
@@ -24,6 +23,7 @@ from hexapod_node import signals
 from hexapod_node.progress import NoProgressError, Watchdog
 from hexapod_node.session import begin
 from hexapod_node.timers import raise_failure
+from hexapod_node.upstream import RCLError
 
 # EventsExecutor.spin() hangs in some builds of rclpy; a finite wait works everywhere.
 _WAIT_S = 0.5
@@ -78,7 +78,7 @@ def _status_of(error: Exception, started: bool) -> int:
         error: what making or spinning the nodes raised.
         started: whether they were made.
     """
-    stopped = signals.requested() or isinstance(error, rclpy_implementation.RCLError)
+    stopped = signals.requested() or isinstance(error, RCLError)
     if stopped and not rclpy.ok():
         return 0  # a signal came amid a callback or a start, whose end is no loss
     starting = not started and isinstance(error, ValueError | OSError | ParameterException)

@@ -9,13 +9,13 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 
 from hexapod_node.schedule import Schedule
 from hexapod_node.simulated_time import SimulatedTime
 from hexapod_node.tick_meter import TickMeter
 from hexapod_node.timers import Timer, call_every
+from hexapod_node.upstream import RCLError
 
 _SECOND_NS = 1_000_000_000
 _PHASE_TOLERANCE_NS = 1_000_000
@@ -89,7 +89,7 @@ class Ticker:
         stamp_ns = self._node.get_clock().now().nanoseconds - overdue_ns
         try:
             self._callback(Tick(stamp_ns, due.late_ns, due.missed))
-        except rclpy_implementation.RCLError:
+        except RCLError:
             if self._node.context.ok():  # else a signal came amid the tick, whose end is no loss
                 raise
 

@@ -1,9 +1,10 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Ways round faults of rclpy 7.1; docs/upstream.md tells each one and when it may go.
+"""What is used of rclpy 7.1 beyond its public names, and ways round its faults.
 
-The timers, the largest of them, have `hexapod_node.timers` to themselves.
+docs/upstream.md tells each fault and when its way round may go. The timers, the largest of them,
+have `hexapod_node.timers` to themselves.
 """
 
 from __future__ import annotations
@@ -13,8 +14,30 @@ from typing import Any
 
 from rcl_interfaces.msg import ParameterType, SetParametersResult
 from rcl_interfaces.srv import SetParameters
+from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.service import Service
+from rclpy.task import Future
+
+RCLError = rclpy_implementation.RCLError
+"""What rclpy raises where its context or a handle is gone; it has no public name."""
 
 _LAST_TYPE = ParameterType.PARAMETER_STRING_ARRAY
+
+
+def answer_later(service: Service, answer: Callable[[Future, Any], None]) -> None:
+    """Let a service whose callback returns a future answer when that is done.
+
+    EventsExecutor hands what a callback returns straight to `send_response`.
+
+    Args:
+        service: that was created with such a callback.
+        answer: is called with the future, which is done, and the request's header.
+    """
+
+    def send_when_done(done: Future, header: Any) -> None:
+        done.add_done_callback(lambda future: answer(future, header))
+
+    service.send_response = send_when_done  # type: ignore[method-assign, assignment]
 
 
 def one_parameter_at_a_time(handler: Callable[..., Any]) -> Callable[..., Any]:

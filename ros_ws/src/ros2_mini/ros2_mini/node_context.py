@@ -11,8 +11,8 @@ from importlib.resources import as_file, files
 
 import rclpy
 from hexapod_node.environment import provide_log_directory
+from hexapod_node.upstream import RCLError
 from rclpy.executors import ExternalShutdownException
-from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
@@ -55,7 +55,7 @@ def open_node(
         yield node
         if not rclpy.ok():
             raise ExternalShutdownException
-    except (ExternalShutdownException, _rclpy.RCLError) as error:
+    except (ExternalShutdownException, RCLError) as error:
         if rclpy.ok():
             raise
         # What was just under way when the signal came returns early, or fails in its own way.
