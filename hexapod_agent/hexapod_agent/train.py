@@ -5,17 +5,20 @@
 
 import argparse
 import csv
+import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 from typing import Any
 
 from hexapod_sim.command_line import MOST_EPISODES, MOST_SEED, CommandLine, folder, whole
+from hexapod_sim.task import EVALUATION_SEED
 
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.learning import checkpoint
 from hexapod_agent.learning.event_log import EventLog
+from hexapod_agent.learning.player import Agent
 from hexapod_agent.learning.progress import Report, episode_report
 from hexapod_agent.learning.run_checkpoint import different, listed
 from hexapod_agent.learning.summary import EpisodeSummary
@@ -25,28 +28,43 @@ from hexapod_agent.specification.run_spec import ConfigError, RunSpec, add_spec_
 CHECKPOINT = 'checkpoint.pt'  # with the replay buffer: to resume
 AGENT = 'agent.pt'  # the actor alone: to evaluate and to keep
 LOG = 'episodes.csv'
+EVALUATION = 'evaluation.csv'  # the same of the episodes without noise at the end
 EVENTS = 'tensorboard'  # folder of the same curves, for `tensorboard --logdir`
 
 
 def train_episode(env: HexapodLine, trainer: Trainer) -> EpisodeSummary:
     """Run and learn one episode, the trainer's next."""
-    observation, _ = env.reset(seed=trainer.seed, options={'episode': trainer.episode})
-    trainer.begin_episode(trainer.episode)
+    return _run_episode(env, trainer, trainer.seed, trainer.episode)
+
+
+def evaluate(env: HexapodLine, trainer: Trainer) -> Iterator[EpisodeSummary]:
+    """Play the episodes of the run's evaluation; the last one's average return is their mean."""
+    player = trainer.evaluator()
+    for episode in range(trainer.config.training.evaluation):
+        yield _run_episode(env, player, EVALUATION_SEED, episode)
+
+
+def _run_episode(env: HexapodLine, agent: Agent, seed: int, episode: int) -> EpisodeSummary:
+    observation, _ = env.reset(seed=seed, options={'episode': episode})
+    agent.begin_episode(episode)
     while True:
-        action = trainer.observe(observation, env.outcome)
-        trainer.learn()
+        action = agent.observe(observation, env.outcome)
+        agent.learn()
         observation, _, terminated, truncated, _ = env.step(action)
         if terminated or truncated:
-            return trainer.end_episode(observation, env.outcome)
+            return agent.end_episode(observation, env.outcome)
 
 
 def train(
     trainer: Trainer,
     episodes: int,
     directory: Path,
-    report: Report = lambda summary: None,
-) -> None:
+    report: Report = lambda summary, evaluation=0: None,
+) -> float:
     """Train until the run has so many episodes, with a log and checkpoints in a directory.
+
+    Returns:
+        Mean return of the evaluation that follows; NaN where there is none.
 
     Raises:
         OSError: The disk refuses.
@@ -75,6 +93,24 @@ def train(
             report(summary)
     checkpoint.save(directory / CHECKPOINT, trainer, to_resume=True)
     checkpoint.save(directory / AGENT, trainer, to_resume=False)
+    return _evaluated(env, trainer, directory / EVALUATION, report)
+
+
+def _evaluated(env: HexapodLine, trainer: Trainer, log: Path, report: Report) -> float:
+    """Evaluate the run, and return the mean return."""
+    evaluation = trainer.config.training.evaluation
+    log.unlink(missing_ok=True)  # of the run when it was shorter
+    mean = math.nan
+    for summary in evaluate(env, trainer):
+        columns = _columns(summary)
+        with log.open('a', newline='') as file:
+            writer = csv.DictWriter(file, columns)
+            if not summary.episode:
+                writer.writeheader()
+            writer.writerow(columns)
+        mean = summary.average_return
+        report(summary, evaluation)
+    return mean
 
 
 def _columns(summary: EpisodeSummary) -> dict[str, Any]:
@@ -105,7 +141,7 @@ def main(args: Sequence[str] | None = None) -> None:
         episodes = _episodes(options, trainer)
         name = trainer.spec.letters or 'none'
         with episode_report(name, trainer.episode, episodes) as report:
-            train(trainer, episodes, options.out, report)
+            evaluation_return = train(trainer, episodes, options.out, report)
     except (ValueError, OSError, MemoryError) as error:  # configuration, checkpoint, disk, buffer
         parser.error(str(error))
     except TrainingDivergedError as error:
@@ -114,6 +150,8 @@ def main(args: Sequence[str] | None = None) -> None:
         print(f'train: interrupted; --resume goes on from {options.out / CHECKPOINT}, if any')
         sys.exit(130)
     print(f'final average reward {trainer.average_return:.1f}')
+    if starts := trainer.config.training.evaluation:
+        print(f'evaluation return {evaluation_return:.1f}, without noise, mean of {starts} starts')
     print(f'agent: {options.out / AGENT}')
     print(f'to resume: {options.out / CHECKPOINT}')
 

@@ -123,6 +123,10 @@ def episode_seed(run_seed: int, episode: int) -> int:
     return int(np.random.SeedSequence((run_seed, episode)).generate_state(1, np.uint64)[0])
 
 
+EVALUATION_SEED = 2**63
+"""Seed of the starts that every run is evaluated at: no run's own, which are less."""
+
+
 def line_at(step: int, config: TaskConfig) -> float:
     """Return where the goal line runs after so many control periods [m].
 

@@ -34,7 +34,10 @@ ALWAYS = {'/joint_states', '/cpg/state', '/line_offset', '/step_outcome'}
 def short(tmp_path) -> str:
     """Return a configuration of short episodes and small batches."""
     path = tmp_path / 'short.yaml'
-    path.write_text('task: {time_limit_steps: 60}\nddpg: {batch_size: 32, update_every: 6}\n')
+    path.write_text(
+        'task: {time_limit_steps: 60}\nddpg: {batch_size: 32, update_every: 6}\n'
+        'training: {evaluation: 2}\n'
+    )
     return str(path)
 
 
@@ -44,7 +47,7 @@ def swift(tmp_path) -> str:
     changes = yaml.safe_load((files('hexapod_agent') / 'swift.yaml').read_text())
     changes['task'] = {'time_limit_steps': 60}
     changes['learner']['ddpg'] |= {'batch_size': 32, 'update_every': 8}
-    changes['training']['episodes'] = 3
+    changes['training'] |= {'episodes': 3, 'evaluation': 2}
     path = tmp_path / 'swift.yaml'
     path.write_text(yaml.safe_dump(changes))
     return str(path)

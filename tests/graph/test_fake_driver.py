@@ -25,6 +25,7 @@ task: {time_limit_steps: 40}
 ddpg: {batch_size: 16, update_every: 4}
 actor: {hidden: [16, 12]}
 critic: {hidden: [16, 12]}
+training: {evaluation: 0}
 """
 
 

@@ -31,7 +31,7 @@ EPISODES = 5
 SHORT = (
     'task: {time_limit_steps: 20}\nddpg: {batch_size: 8, update_every: 4}\n'
     'actor: {hidden: [16, 16]}\ncritic: {hidden: [16, 16]}\n'
-    'training: {checkpoint_every: 2}\n'
+    'training: {evaluation: 2, checkpoint_every: 2}\n'
 )
 
 

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from hexapod_agent.learning.training import Trainer
 from hexapod_agent.nodes.agent_node import AgentNode
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_sim.nodes.sim_node import SimNode
@@ -39,8 +40,8 @@ def planned_actions() -> np.ndarray:
 class ScriptedTrainer(Trainer):
     """Plays the planned actions and keeps what it is shown."""
 
-    def __init__(self, *args) -> None:
-        super().__init__(*args)
+    def __init__(self, config: RunSpec, seed: int) -> None:
+        super().__init__(config.with_settings(['training.evaluation=0']), seed)
         self.actions = planned_actions()
         self.observations: list[np.ndarray] = []
         self.rewards: list[float] = []

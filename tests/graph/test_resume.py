@@ -36,7 +36,7 @@ def goal(tmp_path: Path) -> Callable[..., TrainRun.Goal]:
     (tmp_path / 'short.yaml').write_text(
         'task: {time_limit_steps: 20}\nddpg: {batch_size: 8, update_every: 4}\n'
         f'actor: {{hidden: [16, 16]}}\ncritic: {{hidden: [16, 16]}}\n'
-        f'training: {{checkpoint_every: {EVERY}}}\n'
+        f'training: {{evaluation: 2, checkpoint_every: {EVERY}}}\n'
     )
 
     def make(name: str, **changes) -> TrainRun.Goal:

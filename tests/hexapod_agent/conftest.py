@@ -17,6 +17,7 @@ def small_config() -> RunSpec:
         'critic': {'hidden': [16, 12]},
         'ddpg': {'batch_size': 16, 'buffer_size': 5000, 'update_every': 8},
         'noise': {'decay': 1e-4},
+        'training': {'evaluation': 2},
     }
     return RunSpec.from_mapping(changes, 'small_config')
 

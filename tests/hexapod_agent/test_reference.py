@@ -54,6 +54,7 @@ def trained(observations: str, lengths: Sequence[int]) -> dict[str, Any]:
         out = Path(folder) / 'run'
         options = {'observations': observations, 'seed': SEED, 'out': out}
         start = [f'--{name}={value}' for name, value in options.items()]
+        start.append('--set=training.evaluation=0')  # no part of what was recorded
         for length in lengths:
             train.main([*start, f'--episodes={length}', *(['--resume'] if weights else [])])
             agent = checkpoint.load(out / train.CHECKPOINT, to_resume=True).agent

@@ -9,8 +9,11 @@ import re
 import numpy as np
 import pytest
 import yaml
+from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.learning import checkpoint
+from hexapod_agent.learning.player import Player
 from hexapod_agent.learning.training import Trainer
+from hexapod_sim.task import LineTask
 
 from hexapod_agent import train
 
@@ -28,8 +31,8 @@ def run(*arguments) -> None:
     train.main([str(argument) for argument in arguments])
 
 
-def log(directory) -> list[dict[str, str]]:
-    with (directory / train.LOG).open() as file:
+def log(directory, name=train.LOG) -> list[dict[str, str]]:
+    with (directory / name).open() as file:
         return list(csv.DictReader(file))
 
 
@@ -56,6 +59,59 @@ def test_resumed_log_is_the_uninterrupted_one(config_file, tmp_path):
     run('--episodes', 5, '--out', part, '--resume')
     assert log(part) == log(whole)
     assert len(log(whole)) == 5
+
+
+def test_an_evaluation_ends_the_run_and_changes_no_number_of_it(config_file, tmp_path, capsys):
+    judged, plain = tmp_path / 'judged', tmp_path / 'plain'
+    given = ('--config', config_file, '--episodes', 3)
+    run(*given, '--out', judged)
+    rows = log(judged, train.EVALUATION)
+    returns = [float(row['episode_return']) for row in rows]
+    assert len(returns) == 2
+    assert float(rows[-1]['average_return']) == np.mean(returns)
+    assert f'evaluation return {np.mean(returns):.1f}' in capsys.readouterr().out
+    assert {row['updates'] for row in rows} == {'0.0'}
+    run(*given, '--set', 'training.evaluation=0', '--out', plain)
+    assert not (plain / train.EVALUATION).exists()
+    assert log(plain) == log(judged)
+    state = checkpoint.load(judged / train.CHECKPOINT, to_resume=True).state_dict(to_resume=True)
+    same = checkpoint.load(plain / train.CHECKPOINT, to_resume=True).state_dict(to_resume=True)
+    assert state['noise_generator'] == same['noise_generator']
+    assert state['replay_generator'] == same['replay_generator']
+
+
+def test_every_run_is_evaluated_from_the_same_starts(make_trainer, monkeypatch):
+    seeds: list[int] = []
+    reset = LineTask.reset
+
+    def noted(task, seed):
+        seeds.append(seed)
+        return reset(task, seed)
+
+    monkeypatch.setattr(LineTask, 'reset', noted)
+    for seed, letters in ((5, 'BC'), (6, 'A')):
+        trainer = make_trainer(letters, seed)
+        list(train.evaluate(HexapodLine(config=trainer.config), trainer))
+    assert seeds[:2] == seeds[2:]
+    assert len(set(seeds)) == 2
+
+
+def test_a_run_that_ends_amid_its_evaluation_gives_the_same(config_file, tmp_path, monkeypatch):
+    whole, part = tmp_path / 'whole', tmp_path / 'part'
+    given = ('--config', config_file, '--episodes', 3)
+    run(*given, '--out', whole)
+
+    def cut(self, observation, outcome):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Player, 'end_episode', cut)
+        with pytest.raises(SystemExit):
+            run(*given, '--out', part)
+    assert not (part / train.EVALUATION).exists()
+    run('--episodes', 3, '--out', part, '--resume')
+    for name in (train.LOG, train.EVALUATION):
+        assert log(part, name) == log(whole, name)
 
 
 @pytest.mark.parametrize(

@@ -35,7 +35,7 @@ SMALL = {
     'actor': {'hidden': [16, 12]},
     'critic': {'hidden': [16, 12]},
     'ddpg': {'batch_size': 16, 'buffer_size': 5000, 'update_every': 8},
-    'training': {'checkpoint_every': 2, 'window': 2},
+    'training': {'evaluation': 2, 'checkpoint_every': 2, 'window': 2},
 }
 
 

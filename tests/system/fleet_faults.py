@@ -29,7 +29,7 @@ task: {time_limit_steps: 40}
 actor: {hidden: [16, 12]}
 critic: {hidden: [16, 12]}
 ddpg: {batch_size: 16, buffer_size: 5000, update_every: 8}
-training: {checkpoint_every: 2, window: 2}
+training: {evaluation: 2, checkpoint_every: 2, window: 2}
 """
 _START_S = 60.0
 

@@ -22,7 +22,7 @@ task: {time_limit_steps: 10}
 ddpg: {batch_size: 8, buffer_size: 1000, update_every: 5}
 actor: {hidden: [16, 16]}
 critic: {hidden: [16, 16]}
-training: {checkpoint_every: 2}
+training: {evaluation: 2, checkpoint_every: 2}
 """
 TWO_RUNS = '--generators B=A --factors 2'
 SIXTEEN_RUNS = '--generators E=ABCD --factors 5'
@@ -84,4 +84,5 @@ class ShortCampaign:
         trainer = Trainer(settings.observing(observations), seed)
         env = HexapodLine(observations, settings)
         summaries = [vars(train_episode(env, trainer)) for _ in range(self.episodes)]
-        return pd.DataFrame(summaries).set_index('episode').drop(columns='terms')
+        rows = [summary | summary['metrics'] for summary in summaries]
+        return pd.DataFrame(rows).set_index('episode').drop(columns=['terms', 'metrics'])

@@ -32,6 +32,7 @@ def plan(shell) -> Path:
     assert shell.run(line).returncode == 0
     (shell.directory / 'short.yaml').write_text(
         f'task: {{time_limit_steps: {STEPS}}}\nddpg: {{batch_size: 16, update_every: 8}}\n'
+        'training: {evaluation: 2}\n'
     )
     return shell.directory / 'plan.csv'
 

@@ -29,6 +29,7 @@ def campaign(shell) -> Path:
     (shell.directory / 'plan.csv').write_text(PLAN)
     (shell.directory / 'short.yaml').write_text(
         'task: {time_limit_steps: 20}\nddpg: {batch_size: 16, update_every: 8}\n'
+        'training: {evaluation: 0}\n'
     )
     return shell.directory
 

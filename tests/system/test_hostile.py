@@ -25,7 +25,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SEED = int(os.environ.get('HEXAPOD_FUZZ_SEED', '7'))
 SHARE = float(os.environ.get('HEXAPOD_FUZZ_SHARE', '1'))
 SECRET = 'swordfish'
-SHORT = 'task: {time_limit_steps: 200}\nddpg: {update_every: 50}\n'
+SHORT = 'task: {time_limit_steps: 200}\nddpg: {update_every: 50}\ntraining: {evaluation: 1}\n'
 AGENT = ROOT / 'ros_ws/src/hexapod_bringup/agents/ABCDE.pt'
 
 # Messages, requests, parameter sets, and in how many turns.

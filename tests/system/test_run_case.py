@@ -41,6 +41,7 @@ def plan(shell) -> Path:
     (shell.directory / 'plan.csv').write_text(PLAN)
     (shell.directory / 'short.yaml').write_text(
         f'task: {{time_limit_steps: {STEPS}}}\nddpg: {{batch_size: 16, update_every: 8}}\n'
+        'training: {evaluation: 2}\n'
     )
     return shell.directory / 'plan.csv'
 
@@ -79,6 +80,7 @@ def test_a_preempted_job_is_not_done_and_goes_on(shell, plan: Path) -> None:
     (shell.directory / 'short.yaml').write_text(
         f'task: {{time_limit_steps: {8 * STEPS}}}\nddpg: {{batch_size: 16, update_every: 8}}\n'
         'actor: {hidden: [16, 16]}\ncritic: {hidden: [16, 16]}\n'
+        'training: {evaluation: 2}\n'
     )
     long = case(2, episodes=4, every=0)
     job = shell.start(long)

@@ -29,7 +29,7 @@ task: {{time_limit_steps: {STEPS}}}
 ddpg: {{batch_size: 8, buffer_size: 1000, update_every: 5}}
 actor: {{hidden: [16, 16]}}
 critic: {{hidden: [16, 16]}}
-training: {{checkpoint_every: 1000}}
+training: {{evaluation: 0, checkpoint_every: 1000}}
 """
 
 

@@ -94,6 +94,7 @@ def plan(shell) -> Path:
     assert shell.run(line).returncode == 0
     (shell.directory / 'short.yaml').write_text(
         'task: {time_limit_steps: 60}\nddpg: {batch_size: 16, update_every: 6}\n'
+        'training: {evaluation: 2}\n'
     )
     return shell.directory / 'plan.csv'
 

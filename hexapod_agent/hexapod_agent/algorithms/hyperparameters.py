@@ -15,6 +15,7 @@ from annotated_types import Interval, MinLen
 # What the values may be: far wider than anything sensible, but with these nothing divides by zero,
 # waits for ever or is not a number.
 _Count = Annotated[int, Interval(ge=1, le=10_000_000)]
+_Episodes = Annotated[int, Interval(ge=0, le=1_000_000)]
 _Rows = Annotated[int, Interval(ge=1, le=1_000_000_000)]
 _Layers = Annotated[tuple[Annotated[int, Interval(ge=1, le=100_000)], ...], MinLen(1)]
 _Factor = Annotated[float, Interval(ge=0.0, le=1e6)]
@@ -163,6 +164,8 @@ class TrainingConfig:
     Attributes:
         episodes: Episodes of a run.
         window: Last returns that the final average reward is the mean of.
+        evaluation: Episodes without noise or learning after the last one of the training, from
+            starts that are the same for every run; 0 for none.
         checkpoint_every: Episodes between two checkpoints.
         final_rate: Share of both learning rates that is left at the last of `episodes`, towards
             which they fall by the same amount after each; it lasts in episodes after that.
@@ -174,6 +177,7 @@ class TrainingConfig:
 
     episodes: _Count
     window: _Count
+    evaluation: _Episodes
     checkpoint_every: _Count
     final_rate: _Factor
     precision: Literal['float32', 'float32_fast', 'bfloat16']

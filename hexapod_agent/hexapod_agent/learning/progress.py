@@ -6,8 +6,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Protocol
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
@@ -15,7 +16,13 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from hexapod_agent.learning.metrics import SATURATED_SHARE
 from hexapod_agent.learning.summary import EpisodeSummary
 
-Report = Callable[[EpisodeSummary], None]
+
+class Report(Protocol):
+    """What tells of an episode."""
+
+    def __call__(self, summary: EpisodeSummary, evaluation: int = 0) -> None:
+        """Tell of one of the training, or of so many of the evaluation."""
+
 
 _LINE_S = 30.0
 
@@ -39,27 +46,31 @@ def episode_report(name: str, done: int, episodes: int) -> Iterator[Report]:
     )  # fmt: skip
     with progress:
         task = progress.add_task(name, total=episodes, completed=done, status='')
-        yield lambda summary: progress.update(
-            task, completed=summary.episode + 1, status=_status(summary)
-        )
+
+        def report(summary: EpisodeSummary, evaluation: int = 0) -> None:
+            done = episodes if evaluation else summary.episode + 1
+            progress.update(task, completed=done, status=_status(summary, evaluation))
+
+        yield report
 
 
 def _lines(name: str, episodes: int) -> Report:
     """Return what prints the first episode, the last one, and one every half minute."""
     due = 0.0
 
-    def report(summary: EpisodeSummary) -> None:
+    def report(summary: EpisodeSummary, evaluation: int = 0) -> None:
         nonlocal due
-        if time.monotonic() >= due or summary.episode + 1 == episodes:
+        if time.monotonic() >= due or summary.episode + 1 == (evaluation or episodes):
             due = time.monotonic() + _LINE_S
-            count = f'episode {summary.episode + 1} of {episodes}'
-            print(f'{name}: {count}, {_status(summary)}', flush=True)
+            count = '' if evaluation else f'episode {summary.episode + 1} of {episodes}, '
+            print(f'{name}: {count}{_status(summary, evaluation)}', flush=True)
 
     return report
 
 
-def _status(summary: EpisodeSummary) -> str:
+def _status(summary: EpisodeSummary, evaluation: int) -> str:
+    phase = f'evaluating, start {summary.episode + 1} of {evaluation}, ' if evaluation else ''
     return (
-        f'return {summary.episode_return:.0f}, mean {summary.average_return:.0f}, '
+        f'{phase}return {summary.episode_return:.0f}, mean {summary.average_return:.0f}, '
         f'saturated {summary.metrics[SATURATED_SHARE]:.0%}'
     )

@@ -25,6 +25,7 @@ from hexapod_agent.algorithms.ddpg.running_scale import RunningScale
 from hexapod_agent.algorithms.noise import OrnsteinUhlenbeckNoise
 from hexapod_agent.algorithms.replay import Batch, ReplayBuffer
 from hexapod_agent.deployment.policies import trained_policy
+from hexapod_agent.learning.player import Player
 from hexapod_agent.learning.summary import EpisodeRecord, EpisodeSummary
 from hexapod_agent.specification.run_spec import ConfigError, RunSpec
 
@@ -118,6 +119,10 @@ class Trainer:
         if self._summary is None:
             raise RuntimeError('summary: no episode is complete yet')
         return self._summary
+
+    def evaluator(self) -> Player:
+        """Return what plays the agent as it is now: at the end, for the run's evaluation."""
+        return Player(self._policy, self.config.training.evaluation)
 
     def begin_episode(self, episode: int) -> None:
         """Start episode number `episode`, dropping one that was left unfinished.

@@ -31,6 +31,17 @@ def test_first_last_and_one_each_half_minute(monkeypatch, capsys) -> None:
     assert [int(line.split()[2]) for line in lines] == [1, 4, 7, 10]
 
 
+def test_an_evaluation_is_told_as_one(monkeypatch, capsys) -> None:
+    monkeypatch.setattr(progress.time, 'monotonic', lambda: 1.0)
+    with episode_report('CE', 0, 10) as report:
+        for start in range(3):
+            report(summary(start), 3)
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split(', ')[:2] for line in lines] == [
+        ['CE: evaluating', f'start {number} of 3'] for number in (1, 3)
+    ]
+
+
 def test_a_terminal_gets_a_bar(monkeypatch, capsys) -> None:
     monkeypatch.setenv('FORCE_COLOR', '1')
     monkeypatch.setenv('TERM', 'xterm')

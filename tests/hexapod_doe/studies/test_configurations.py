@@ -18,7 +18,7 @@ task: {time_limit_steps: 8}
 ddpg: {batch_size: 4, update_every: 4}
 actor: {hidden: [8, 8]}
 critic: {hidden: [8, 8]}
-training: {checkpoint_every: 1}
+training: {evaluation: 0, checkpoint_every: 1}
 """
 STUDY = {
     'config': 'small.yaml',

@@ -13,7 +13,7 @@ task: {time_limit_steps: 8}
 ddpg: {update_every: 4}
 actor: {hidden: [8, 8]}
 critic: {hidden: [8, 8]}
-training: {checkpoint_every: 1}
+training: {evaluation: 0, checkpoint_every: 1}
 """
 
 
