@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
+from hexapod_agent.run_spec import RunSpec
 from hexapod_sim.command_line import one_line
 
 from hexapod_doe.campaigns.campaign import PLAN_FILE
@@ -26,7 +27,9 @@ from hexapod_doe.designs.aliases import (
 from hexapod_doe.designs.augment import aimed_model, d_optimal, foldover, semifold, variance_ratios
 from hexapod_doe.designs.blocks import confounded_with_blocks
 from hexapod_doe.designs.confirm_plan import confirmation_plan
-from hexapod_doe.designs.design import Design, fraction, from_generators
+from hexapod_doe.designs.design import Design, factor_letters, fraction, from_generators
+from hexapod_doe.designs.factor import Treatments, default_factors
+from hexapod_doe.designs.factor_file import read_factors
 from hexapod_doe.designs.plan_arguments import parse
 from hexapod_doe.designs.plan_file import read_plan, write_plan
 from hexapod_doe.designs.plan_table import follow_up, make_plan
@@ -36,6 +39,7 @@ from hexapod_doe.designs.power import power, smallest_effect
 from hexapod_doe.designs.power_simulation import RunModel, simulate_power
 from hexapod_doe.designs.terms import terms_up_to
 
+_FACTOR_FILES = ('.yaml', '.yml')
 _ROMAN = {2: 'II', 3: 'III', 4: 'IV', 5: 'V', 6: 'VI', 7: 'VII', 8: 'VIII', 9: 'IX'}
 
 
@@ -50,7 +54,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _make(args: argparse.Namespace) -> None:
-    design = _design(args)
+    treatments = _treatments(args)
+    design = _design(args, treatments.letters)
     blocks = args.blocks.split(',') if args.blocks else []
     plan = make_plan(
         design,
@@ -59,6 +64,7 @@ def _make(args: argparse.Namespace) -> None:
         common_seeds=args.common_seeds,
         blocks=blocks,
         confirmation=Confirmation(args.confirm_runs, args.confirm_level),
+        treatments=treatments,
     )
     if note := aberration_note(design):
         print(note)
@@ -120,7 +126,7 @@ def _aliases(args: argparse.Namespace) -> None:
         plans = [read_plan(path) for path in args.plan]
         levels, factors = np.vstack([plan.levels for plan in plans]), plans[0].factors
     else:
-        design = _design(args)
+        design = _design(args, _treatments(args).letters)
         levels, factors = design.levels, design.factors
         if note := aberration_note(design):
             print(note)
@@ -139,7 +145,7 @@ def _print_words(relation: str, length: int | None) -> None:
 
 
 def _power(args: argparse.Namespace) -> None:
-    design = _design(args)
+    design = _design(args, _treatments(args).letters)
     terms = representatives(design.levels, design.factors, args.max_order)
     runs, parameters = design.cases * args.replicates, 1 + len(terms)
     print(f'{design.cases} cases x {args.replicates} replicates, {parameters} parameters')
@@ -200,8 +206,17 @@ def leading_sets(campaign: Path) -> list[str]:
     return [check.label for check in found.confirmation.checks]
 
 
-def _design(args: argparse.Namespace) -> Design:
-    factors = int(args.factors) if args.factors.isdigit() else args.factors
+def _treatments(args: argparse.Namespace) -> Treatments:
+    """Return the factors of the command line: of a file, or sensors by number or letters."""
+    base = RunSpec.load(args.config, args.set)
+    if Path(args.factors).suffix in _FACTOR_FILES or Path(args.factors).is_file():
+        return read_factors(Path(args.factors).expanduser(), base)
+    number = args.factors.isdigit()
+    letters = factor_letters(int(args.factors)) if number else args.factors
+    return Treatments(default_factors(letters), base)
+
+
+def _design(args: argparse.Namespace, factors: str) -> Design:
     if args.generators:
         return from_generators(args.generators, factors)
     return fraction(args.design, factors)

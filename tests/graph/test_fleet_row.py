@@ -21,6 +21,7 @@ from hexapod_doe.bags.run_record import read_run
 from hexapod_doe.bags.verify import verify
 from hexapod_doe.campaigns.campaign import Row, RunSettings
 from hexapod_doe.campaigns.fleet_row import FleetRow
+from hexapod_doe.designs.factor import sensors
 from hexapod_doe.nodes.recorder_node import RecorderNode
 from hexapod_doe.nodes.train_goal import train_goal
 from hexapod_doe.run_fleet import build_fleet
@@ -83,7 +84,7 @@ def in_fleet(config: Path) -> Callable[[Row], Exception | None]:
 
 @pytest.fixture
 def row(tmp_path: Path) -> Callable[[str], Row]:
-    return lambda name: Row('r', 'BE', 4, tmp_path / name, {'case': '3'})
+    return lambda name: Row('r', 'BE', 4, tmp_path / name, {'case': '3'}, sensors('BE'), (1, 1))
 
 
 @pytest.fixture

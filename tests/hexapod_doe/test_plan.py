@@ -132,7 +132,7 @@ def test_the_measured_run_is_a_whole_training_unless_told(capsys):
     ('words', 'message'),
     [
         (['--generators', 'F=ABX'], "plan: generator F=ABX: 'X' is not a base factor"),
-        (['--factors', '13'], 'plan: 13 factors: expected 2 to 12'),
+        (['--factors', '16'], 'plan: 16 factors: expected 2 to 15'),
         (['fold', '/nowhere/plan.csv', '--on', 'C'], 'plan: /nowhere/plan.csv: no such file'),
         (['power', '--design', 'eighth', '--max-order', '3'], 'plan: 16 runs, 16 parameters'),
         (['hours', '--hours', '0.0001', '--seconds-per-run', '60'], 'plan: 0.0001 h pay for'),

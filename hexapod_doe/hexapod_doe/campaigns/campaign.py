@@ -9,12 +9,14 @@ import os
 import tempfile
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 from hexapod_agent.specification.run_spec import RunSpec
 
 from hexapod_doe.bags.bag_state import sound_metadata
 from hexapod_doe.bags.run_identity import differences, run_identity, settings
+from hexapod_doe.designs.factor import FACTORS, Treatments
 from hexapod_doe.designs.plan_file import read_plan
 from hexapod_doe.designs.plan_types import Plan
 from hexapod_doe.errors import BagError, CampaignError
@@ -36,7 +38,20 @@ class Row:
     bag: Path
     """Directory of the run's bag, complete or not yet there."""
     metadata: Mapping[str, str]
-    """Every column of the row, for the bag."""
+    """Every column of the row, for the bag; where a plan has factors of its own also these."""
+    treatments: Treatments
+    """The factors of the plan and their base."""
+    levels: tuple[int, ...]
+    """Coded, one per factor."""
+
+    @cached_property
+    def spec(self) -> RunSpec:
+        """The specification of the run.
+
+        Raises:
+            hexapod_agent.run_spec.ConfigError: a factor has no key.
+        """
+        return self.treatments.spec(self.levels)
 
     @property
     def identity(self) -> dict[str, str]:
@@ -86,13 +101,17 @@ def read_rows(plan: Path) -> tuple[Row, ...]:
 
 def rows_of(plan: Plan, directory: Path) -> tuple[Row, ...]:
     """Return the rows of a plan in its run order; their bags are to lie in a campaign's folder."""
+    treatments = plan.treatments
+    factors = {} if treatments.default else {FACTORS: treatments.factors_text}
     return tuple(
         Row(
             run_id=row['run_id'],
             observations=row['observations'],
             seed=int(row['seed']),
             bag=directory / RUNS_FOLDER / row['run_id'],
-            metadata={str(key): str(value) for key, value in row.items()},
+            metadata={str(key): str(value) for key, value in row.items()} | factors,
+            treatments=treatments,
+            levels=tuple(row[letter] for letter in plan.factors),
         )
         for row in plan.rows.sort_values('RunOrder').to_dict('records')
     )

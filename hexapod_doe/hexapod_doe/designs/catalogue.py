@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Minitab's default generators of two-level fractions, for 3 to 12 factors.
+"""Minitab's default generators of two-level fractions, for 3 to 15 factors.
 
 The same table is printed in Montgomery, Design and Analysis of Experiments, as "Selected 2^(k-p)
 fractional factorial designs"; `J` follows `H` because `I` names the identity.
@@ -35,6 +35,9 @@ _GENERATORS: dict[tuple[int, int], str] = {
     (12, 6): 'G=DEF H=ABC J=BCDE K=BCDF L=ABEF M=ACEF',
     (12, 7): 'F=ACE G=ACD H=ABD J=ABE K=CDE L=ABCDE M=ADE',
     (12, 8): 'E=ABC F=ABD G=ACD H=BCD J=ABCD K=AB L=AC M=AD',
+    (13, 9): 'E=ABC F=ABD G=ACD H=BCD J=ABCD K=AB L=AC M=AD N=BC',
+    (14, 10): 'E=ABC F=ABD G=ACD H=BCD J=ABCD K=AB L=AC M=AD N=BC O=BD',
+    (15, 11): 'E=ABC F=ABD G=ACD H=BCD J=ABCD K=AB L=AC M=AD N=BC O=BD P=CD',
 }
 
 

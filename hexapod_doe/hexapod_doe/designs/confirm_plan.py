@@ -51,7 +51,7 @@ def confirmation_plan(plan: Plan, sets: Sequence[str], replicates: int | None = 
                 f'confirm_{letters[c] or "none"}_rep{1 + r:02d}'
                 for c, r in zip(number, replicate, strict=True)
             ],
-            'observations': [letters[c] for c in number],
+            'observations': [plan.treatments.observations(levels[c]) for c in number],
             **dict(zip(plan.factors, levels[number].T, strict=True)),
         }
     )
@@ -63,14 +63,14 @@ def _settings(plan: Plan, rule: Confirmation, letters: Sequence[str], runs: int)
     named = tuple(each or _EMPTY[0] for each in letters)
     return PlanSettings(
         design=f'confirmation of {", ".join(named)}',
-        factors=plan.factors,
+        treatments=plan.treatments,
         generators={},
         defining_relation='',
         resolution=None,
         cases=len(letters),
         replicates=runs,
         seed=before.seed if before else 1,
-        base=plan.fingerprint,
+        predecessor=plan.fingerprint,
         confirms=named,
         confirmation=replace(rule, runs=runs),
     )

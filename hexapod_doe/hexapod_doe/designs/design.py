@@ -13,8 +13,8 @@ import numpy as np
 from hexapod_doe.designs.catalogue import catalogue_generators
 from hexapod_doe.designs.terms import LETTERS, letters_on, product, sort_key
 
-MIN_FACTORS, MAX_FACTORS = 2, 12
-FRACTIONS = {'full': 0, 'half': 1, 'quarter': 2, 'eighth': 3}
+MIN_FACTORS, MAX_FACTORS = 2, len(LETTERS)
+FRACTIONS = {'full': 0, 'half': 1, 'quarter': 2, 'eighth': 3, 'sixteenth': 4}
 """The named fractions: how many factors are generated from the others."""
 
 
@@ -80,7 +80,7 @@ class Design:
 
 
 def fraction(name: str, factors: str | int = 7) -> Design:
-    """Return a named fraction: `full`, `half`, `quarter` or `eighth`.
+    """Return a named fraction: `full`, `half`, `quarter`, `eighth` or `sixteenth`.
 
     For seven factors `quarter` is F=ABCD, G=ABDE and `eighth` is E=ABC, F=BCD, G=ACD:
     Minitab's default generators, which the article's case numbers agree with.
@@ -122,7 +122,7 @@ def factor_letters(count: int) -> str:
     """Return the first `count` factor letters.
 
     Raises:
-        ValueError: The count is not within 2 to 12.
+        ValueError: The count is not within 2 to 15.
     """
     if not MIN_FACTORS <= count <= MAX_FACTORS:
         raise ValueError(f'{count} factors: expected {MIN_FACTORS} to {MAX_FACTORS}')

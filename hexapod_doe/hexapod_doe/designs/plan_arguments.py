@@ -6,6 +6,7 @@
 import argparse
 from pathlib import Path
 
+from hexapod_agent.run_spec import add_spec_options
 from hexapod_sim.command_line import MOST_SEED, CommandLine, file, number, path, whole
 
 from hexapod_doe.designs.design import FRACTIONS
@@ -49,7 +50,7 @@ def _parser() -> CommandLine:
     return parser
 
 
-def _add_make(parser: argparse.ArgumentParser) -> None:
+def _add_make(parser: CommandLine) -> None:
     _add_design(parser)
     _add_output(parser)
     parser.add_argument(
@@ -108,7 +109,7 @@ def _add_confirm(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _add_aliases(parser: argparse.ArgumentParser) -> None:
+def _add_aliases(parser: CommandLine) -> None:
     _add_design(parser)
     parser.add_argument(
         '--plan',
@@ -120,7 +121,7 @@ def _add_aliases(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--max-order', type=_COUNT, default=2, metavar='N', help='order (2)')
 
 
-def _add_power(parser: argparse.ArgumentParser) -> None:
+def _add_power(parser: CommandLine) -> None:
     _add_design(parser)
     parser.add_argument('--replicates', type=_COUNT, default=1, metavar='N', help='runs per case')
     parser.add_argument(
@@ -177,15 +178,20 @@ def _add_hours(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--sigma', type=number(gt=0), metavar='X', help='SD of one run, if known')
 
 
-def _add_design(parser: argparse.ArgumentParser) -> None:
+def _add_design(parser: CommandLine) -> None:
     which = parser.add_mutually_exclusive_group()
     which.add_argument(
         '--design', default='eighth', choices=list(FRACTIONS), help='named fraction'
     )
     which.add_argument('--generators', metavar='F=ABCD,G=-ABDE', help='generators of the design')
     parser.add_argument(
-        '--factors', default='7', metavar='K', help='how many factors, or their letters (7)'
+        '--factors',
+        default='7',
+        metavar='K|FILE.yaml',
+        help='how many sensors, or their letters (7); or a file of factors, each an entry with '
+        'name, key of the specification, low, high, and perhaps device and letter',
     )
+    add_spec_options(parser)
 
 
 def _add_output(parser: argparse.ArgumentParser, replicates: int | None = 1) -> None:

@@ -5,12 +5,15 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
+from hexapod_agent.run_spec import RunSpec
 
+from hexapod_doe.designs.factor import Treatments, sensors
+from hexapod_doe.designs.factor_file import factors_of
 from hexapod_doe.designs.plan_types import Confirmation, Plan, PlanSettings
-from hexapod_doe.designs.terms import letters_on
 from hexapod_doe.errors import TableError
 from hexapod_doe.sheets.numbers import plain
 from hexapod_doe.sheets.sheet import read_sheet
@@ -53,8 +56,9 @@ def read_plan(path: Path) -> Plan:
         raise PlanError(f'{path}: column {twice[0]!r} occurs twice, expected it once')
     text = sheet.cells.set_axis(list(sheet.headings), axis=1).reset_index(drop=True)
     rows = _parse(text, path)
-    _check(rows, path)
-    return Plan(rows, _read_settings(path.with_suffix('.json')))
+    plan = Plan(rows, _read_settings(path.with_suffix('.json')))
+    _check(plan, path)
+    return plan
 
 
 def _parse(text: pd.DataFrame, path: Path) -> pd.DataFrame:
@@ -80,14 +84,19 @@ def _integer(value: str, column: str, row: object, path: Path) -> int:
         raise PlanError(f'{where}: {column} is {value!r}, expected an integer') from error
 
 
-def _check(rows: pd.DataFrame, path: Path) -> None:
-    factors = ''.join(name for name in rows.columns if len(name) == 1)
+def _check(plan: Plan, path: Path) -> None:
+    rows, factors = plan.rows, plan.factors
+    if plan.treatments.letters != factors:
+        raise PlanError(
+            f'{path}: factor columns {factors}, expected {plan.treatments.letters} '
+            f'by {path.with_suffix(".json").name}'
+        )
     for index, row in rows.iterrows():
         where = f'{path} row {int(str(index)) + 1}'
         for factor in factors:
             if row[factor] not in (-1, 1):
                 raise PlanError(f'{where}: level {factor} is {row[factor]}, expected -1 or 1')
-        expected = letters_on(row[list(factors)], factors)
+        expected = plan.treatments.observations([row[factor] for factor in factors])
         if row['observations'] != expected:
             raise PlanError(
                 f'{where}: observations {row["observations"]!r}, expected {expected!r} '
@@ -96,7 +105,7 @@ def _check(rows: pd.DataFrame, path: Path) -> None:
         if not 0 <= row['seed'] < _SEED_LIMIT:
             raise PlanError(f'{where}: seed {row["seed"]}, expected 0 to 2^64 - 1')
     _check_keys(rows, path)
-    if (rows.groupby('case')['observations'].nunique() > 1).any():
+    if (rows.groupby('case')[list(factors)].nunique() > 1).any(axis=None):
         raise PlanError(f'{path}: a case has rows of different levels, expected one set per case')
 
 
@@ -121,11 +130,23 @@ def _read_settings(path: Path) -> PlanSettings | None:
     try:
         mapping = json.loads(path.read_text(encoding='utf-8'))
         confirmation = mapping.pop('confirmation')
+        treatments, before = _read_treatments(mapping)
         return PlanSettings(
             **{**mapping, **{name: tuple(mapping.get(name, ())) for name in _LISTS}},
+            treatments=treatments,
+            predecessor=before,
             confirmation=Confirmation(
                 confirmation['runs'], confirmation['level'], tuple(confirmation['seeds'])
             ),
         )
-    except (json.JSONDecodeError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise PlanError(f'{path}: not the settings of a plan ({error})') from error
+
+
+def _read_treatments(mapping: dict[str, Any]) -> tuple[Treatments, str]:
+    """Take factors, base and the plan before out of the settings of a file."""
+    factors, base = mapping.pop('factors'), mapping.pop('base', '')
+    if isinstance(factors, str):  # sensors; the base is the plan before
+        return sensors(factors), base
+    spec = RunSpec.from_mapping(base, 'base')
+    return Treatments(factors_of(factors, spec), spec), mapping.pop('predecessor', '')

@@ -13,8 +13,8 @@ import pandas as pd
 from hexapod_doe.designs.aliases import defining_relation, defining_words, resolution
 from hexapod_doe.designs.blocks import block_labels
 from hexapod_doe.designs.design import Design
+from hexapod_doe.designs.factor import Treatments, sensors
 from hexapod_doe.designs.plan_types import Confirmation, Plan, PlanSettings
-from hexapod_doe.designs.terms import letters_on
 
 _SEED_RANGE = 2**31
 """Seeds of runs are drawn below this, so that every file format holds them exactly."""
@@ -28,6 +28,7 @@ def make_plan(
     common_seeds: bool = False,
     blocks: Sequence[str] = (),
     confirmation: Confirmation | None = None,
+    treatments: Treatments | None = None,
 ) -> Plan:
     """Return the plan of a design.
 
@@ -38,15 +39,17 @@ def make_plan(
         common_seeds: Whether replicate r of every case has the same seed (seeds as blocks).
         blocks: Block generators; blocks run one after the other.
         confirmation: The rule stored with the plan; its seeds are drawn here.
+        treatments: What the columns stand for; sensors if None.
 
     Raises:
-        ValueError: The replicates or the blocks don't make sense.
+        ValueError: The replicates or the blocks don't make sense, or a case has values that no
+            run may have.
     """
     return _plan(
         design.levels,
         PlanSettings(
             design=design.name,
-            factors=design.factors,
+            treatments=treatments or sensors(design.factors),
             generators=dict(design.generators),
             defining_relation=defining_relation(design.words),
             resolution=resolution(design.words),
@@ -74,7 +77,7 @@ def follow_up(plan: Plan, levels: np.ndarray, how: str, replicates: int, seed: i
     before = plan.settings
     settings = PlanSettings(
         design=f'{before.design if before else "plan"} + {how}',
-        factors=plan.factors,
+        treatments=plan.treatments,
         generators={},
         defining_relation=defining_relation(words),
         resolution=resolution(words),
@@ -84,7 +87,7 @@ def follow_up(plan: Plan, levels: np.ndarray, how: str, replicates: int, seed: i
         common_seeds=before is not None and before.common_seeds,
         blocks=_kept_blocks(levels, plan.factors, before.blocks if before else ()),
         follows=how,
-        base=plan.fingerprint,
+        predecessor=plan.fingerprint,
         confirmation=before.confirmation if before else Confirmation(),
     )
     return _plan(levels, settings, plan.rows)
@@ -103,6 +106,10 @@ def _plan(levels: np.ndarray, settings: PlanSettings, before: pd.DataFrame | Non
     """Return the plan of any cases, numbered on and seeded apart from the rows before them."""
     if settings.replicates < 1:
         raise ValueError(f'{settings.replicates} replicates: expected at least 1')
+    factors, treatments = settings.treatments.letters, settings.treatments
+    if not treatments.default:
+        for case in levels:  # every one of them can be run
+            treatments.spec(case)
     first_row = 1 if before is None else 1 + int(before['StdOrder'].max())
     first_case = 1 if before is None else 1 + int(before['case'].max())
     order_rng, seed_rng = map(
@@ -111,7 +118,7 @@ def _plan(levels: np.ndarray, settings: PlanSettings, before: pd.DataFrame | Non
     number = np.tile(np.arange(len(levels)), settings.replicates)
     replicate = np.repeat(np.arange(settings.replicates), len(levels))
     seeds, spare = _seeds(settings, len(levels), before, seed_rng)
-    blocks = block_labels(levels, settings.factors, settings.blocks)[number]
+    blocks = block_labels(levels, factors, settings.blocks)[number]
     if settings.block_column == 'block' and before is not None:  # another time, other blocks
         blocks = blocks + (int(before['block'].max()) if 'block' in before else 1)
     columns: dict[str, Any] = {
@@ -125,8 +132,8 @@ def _plan(levels: np.ndarray, settings: PlanSettings, before: pd.DataFrame | Non
             f'case{first_case + c:02d}_rep{1 + r:02d}'
             for c, r in zip(number, replicate, strict=True)
         ],
-        'observations': [letters_on(levels[c], settings.factors) for c in number],
-        **dict(zip(settings.factors, levels[number].T.astype(int), strict=True)),
+        'observations': [treatments.observations(levels[c]) for c in number],
+        **dict(zip(factors, levels[number].T.astype(int), strict=True)),
     }
     confirmation = settings.confirmation
     confirmation = replace(confirmation, seeds=confirmation.seeds or tuple(spare.tolist()))

@@ -4,11 +4,15 @@
 """What a campaign's plan is: its table of runs, how it was made, how it will be confirmed."""
 
 import hashlib
-from dataclasses import asdict, dataclass, field
+import json
+from dataclasses import asdict, dataclass, field, fields
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 import pandas as pd
+
+from hexapod_doe.designs.factor import Treatments, sensors
 
 
 @dataclass(frozen=True)
@@ -38,12 +42,19 @@ class Confirmation:
         )
 
 
+_ORDER = (
+    'design', 'factors', 'generators', 'defining_relation', 'resolution', 'cases', 'replicates',
+    'seed', 'common_seeds', 'blocks', 'follows', 'base', 'confirms', 'confirmation',
+)  # fmt: skip
+"""How a file lists the settings of a plan."""
+
+
 @dataclass(frozen=True)
 class PlanSettings:
     """How a plan was made; stored beside it, enough to make it again."""
 
     design: str
-    factors: str
+    treatments: Treatments
     generators: dict[str, str]
     defining_relation: str
     resolution: int | None
@@ -54,7 +65,7 @@ class PlanSettings:
     blocks: tuple[str, ...] = ()
     follows: str = ''
     """What an augmenting plan adds to, and how; empty for a first plan."""
-    base: str = ''
+    predecessor: str = ''
     """Fingerprint of the plan that it adds to, or whose choice it confirms; empty for none."""
     confirms: tuple[str, ...] = ()
     """The sets that its runs confirm; empty for a plan whose runs are fitted."""
@@ -71,10 +82,19 @@ class PlanSettings:
         return 'seed' if self.common_seeds else 'block' if self.follows else ''
 
     def as_dict(self) -> dict[str, Any]:
-        """Return plain types, with the confirmation rule in words."""
-        mapping = asdict(self)
-        mapping['confirmation']['rule'] = self.confirmation.rule
-        return mapping
+        """Return plain types, with the confirmation rule in words.
+
+        Sensors on top of article.yaml are their letters, and `base` is the plan before, as in
+        files from before there were other factors.
+        """
+        values = {each.name: getattr(self, each.name) for each in fields(self)}
+        treatments, before = values.pop('treatments'), values.pop('predecessor')
+        values['confirmation'] = asdict(self.confirmation) | {'rule': self.confirmation.rule}
+        if treatments.default:
+            own = {'factors': treatments.letters, 'base': before}
+        else:
+            own = {**treatments.as_dict(), 'predecessor': before}
+        return {name: (values | own)[name] for name in dict.fromkeys((*_ORDER, *own, *values))}
 
 
 @dataclass(frozen=True)
@@ -93,11 +113,19 @@ class Plan:
         """The factor letters: the one-letter columns."""
         return ''.join(name for name in self.rows.columns if len(name) == 1)
 
+    @cached_property
+    def treatments(self) -> Treatments:
+        """What the columns of the factors stand for: sensors where no file says otherwise."""
+        return self.settings.treatments if self.settings else sensors(self.factors)
+
     @property
     def fingerprint(self) -> str:
         """What tells its runs from those of any other plan."""
         columns = ['run_id', 'observations', 'seed']
-        text = self.rows.sort_values('StdOrder')[columns].to_csv(index=False, lineterminator='\n')
+        own = '' if self.treatments.default else json.dumps(self.treatments.as_dict())
+        columns += list(self.factors) if own else []
+        rows = self.rows.sort_values('StdOrder')[columns]
+        text = rows.to_csv(index=False, lineterminator='\n') + own
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
     @property

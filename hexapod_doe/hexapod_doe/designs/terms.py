@@ -14,8 +14,8 @@ CONSTANT = '1'
 CURVATURE = 'curvature'
 """The indicator of a centre point as a term. It repeats letters, so no product is called so."""
 
-LETTERS = 'ABCDEFGHJKLM'
-"""Factor names for 2 to 12 factors; `I` is left out because it names the identity."""
+LETTERS = 'ABCDEFGHJKLMNOP'
+"""Factor names for 2 to 15 factors; `I` is left out because it names the identity."""
 
 
 def letters(term: str) -> str:

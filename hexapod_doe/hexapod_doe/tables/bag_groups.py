@@ -225,7 +225,7 @@ def _adds_to(part: Part, base: Part) -> bool:
     """Whether a plan follows another: it says so, or (an older one) numbers on from it."""
     if part.plan is None or base.plan is None or part.settings is None:
         return False
-    if part.settings.base:
-        return part.settings.base == base.plan.fingerprint
+    if part.settings.predecessor:
+        return part.settings.predecessor == base.plan.fingerprint
     after = part.plan.rows['StdOrder'].min() == 1 + base.plan.rows['StdOrder'].max()
     return bool(after) and part.plan.factors == base.plan.factors

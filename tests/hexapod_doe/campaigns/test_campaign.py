@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from hexapod_doe.campaigns.campaign import Campaign, Row
 from hexapod_doe.campaigns.campaign_lock import campaign_lock
+from hexapod_doe.designs.factor import sensors
 from hexapod_doe.errors import CampaignError
 
 A, B = '/worker_1', '/worker_2'
@@ -19,7 +20,10 @@ A, B = '/worker_1', '/worker_2'
 @pytest.fixture
 def campaign(tmp_path) -> Campaign:
     """Return a campaign of three rows, without a plan."""
-    rows = (Row(f'case{n}', 'A', n, tmp_path / 'runs' / f'case{n}', {}) for n in (1, 2, 3))
+    rows = (
+        Row(f'case{n}', 'A', n, tmp_path / 'runs' / f'case{n}', {}, sensors('A'), (1,))
+        for n in (1, 2, 3)
+    )
     return Campaign(tmp_path, tuple(rows), attempts=3)
 
 

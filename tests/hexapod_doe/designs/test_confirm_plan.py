@@ -25,7 +25,7 @@ def test_each_set_is_run_with_the_seeds_that_the_plan_kept(plan, tmp_path):
         assert tuple(seeds) == plan.settings.confirmation.seeds
     assert read.settings == further.settings
     assert read.settings.confirms == ('CD', '(none)')
-    assert read.settings.base == plan.fingerprint
+    assert read.settings.predecessor == plan.fingerprint
     assert read.settings.confirmation == plan.settings.confirmation
 
 

@@ -111,7 +111,7 @@ def test_a_fold_of_a_plan_without_blocks_is_one_block():
     added = foldover(plan.levels, plan.factors, 'C')
     further = follow_up(plan, added, 'foldover on C', replicates=1, seed=1)
     assert further.rows['block'].unique().tolist() == [2]
-    assert further.settings.base == plan.fingerprint
+    assert further.settings.predecessor == plan.fingerprint
     again = follow_up(further, added, 'foldover on C', replicates=1, seed=1)
     assert again.rows['block'].unique().tolist() == [3]
 

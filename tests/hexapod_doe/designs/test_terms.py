@@ -72,4 +72,4 @@ def test_a_malformed_term_is_named(term, message):
 
 def test_the_alphabet_leaves_out_the_identity():
     assert 'I' not in LETTERS
-    assert len(LETTERS) == 12
+    assert len(LETTERS) == 15

@@ -1,0 +1,234 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Factors of an experiment, each a key of a run's specification with two levels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import yaml
+from hexapod_agent.run_spec import ConfigError, RunSpec
+from hexapod_sim.sensor_table import CHANNELS
+
+FACTORS = 'factors'
+"""Where the metadata of a bag has the factors of its plan, if they are not sensors alone."""
+OBSERVATIONS = 'observations.'
+"""What the key of a sensor begins with."""
+_SENSORS = {channel.letter: channel for channel in CHANNELS if channel.letter}
+_PER_RUN = ('training.episodes',)
+"""Keys that a campaign sets for all of its runs."""
+
+
+@dataclass(frozen=True)
+class Factor:
+    """What an experiment varies between two levels.
+
+    Attributes:
+        letter: Its name in terms and in the columns of a plan.
+        name: Its name in texts.
+        key: Dotted key of the specification; empty for a column of a foreign table.
+        low: Value of the key at level -1.
+        high: Value of the key at level +1.
+        device: What has to be on the robot for the high level; None where nothing has.
+    """
+
+    letter: str
+    name: str
+    key: str = ''
+    low: Any = False
+    high: Any = True
+    device: str | None = None
+
+    @property
+    def is_sensor(self) -> bool:
+        """Whether it is that a channel is observed or not."""
+        return self.key == f'{OBSERVATIONS}{self.letter}' and (self.low, self.high) == (
+            False,
+            True,
+        )
+
+    def value(self, level: float) -> Any:
+        """Return the value of the key at a coded level."""
+        return self.high if level > 0 else self.low
+
+    def text(self, level: float) -> str:
+        """Return a level in words, such as 'yaw share 0.5' or 'body orientation on'."""
+        return f'{self.name} {shown(self.value(level))}'
+
+    @property
+    def change(self) -> str:
+        """From the low to the high level in words, such as 'yaw share 0 → 1'."""
+        return f'{self.name} {shown(self.low)} → {shown(self.high)}'
+
+    def entry(self) -> dict[str, Any]:
+        """Return plain values, as a factor file has them."""
+        values = {
+            'letter': self.letter,
+            'name': self.name,
+            'key': self.key,
+            'low': self.low,
+            'high': self.high,
+        }
+        return values if self.device is None else values | {'device': self.device}
+
+
+def shown(value: Any) -> str:
+    """Return the value of a key in words: on and off for true and false."""
+    if isinstance(value, bool):
+        return 'on' if value else 'off'
+    if isinstance(value, list | tuple):
+        return '×'.join(shown(each) for each in value)
+    return f'{value:g}' if isinstance(value, float) else str(value)
+
+
+def default_factors(letters: Iterable[str]) -> tuple[Factor, ...]:
+    """Return the sensors of some letters; a letter of no sensor has no key.
+
+    Args:
+        letters: In the order of the columns.
+    """
+    return tuple(
+        Factor(
+            letter,
+            _SENSORS[letter].name,
+            f'{OBSERVATIONS}{letter}',
+            device=_SENSORS[letter].device,
+        )
+        if letter in _SENSORS
+        else Factor(letter, letter)
+        for letter in letters
+    )
+
+
+@dataclass(frozen=True)
+class Treatments:
+    """The factors of an experiment, and the specification that all its runs start from."""
+
+    factors: tuple[Factor, ...]
+    base: RunSpec = field(default_factory=RunSpec.load)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain values, as a plan's JSON file has them."""
+        return {
+            'factors': [factor.entry() for factor in self.factors],
+            'base': yaml.safe_load(self.base.to_text()),
+        }
+
+    @cached_property
+    def factors_text(self) -> str:
+        """The factors as YAML, as a bag keeps them."""
+        entries = self.as_dict()['factors']
+        return yaml.safe_dump(entries, sort_keys=False, allow_unicode=True)
+
+    @property
+    def letters(self) -> str:
+        """The letters of the factors."""
+        return ''.join(factor.letter for factor in self.factors)
+
+    @cached_property
+    def default(self) -> bool:
+        """Whether it is sensors alone, on top of article.yaml."""
+        return self.factors == default_factors(self.letters) and self.base == RunSpec.load()
+
+    def observations(self, levels: Sequence[float]) -> str:
+        """Return the letters of the channels that the runs of a case observe.
+
+        A factor without a key counts as one of them.
+        """
+        seen: dict[str, bool] = {letter: on for letter, on in self.base.observations.items() if on}
+        for factor, level in zip(self.factors, levels, strict=True):
+            if factor.key.startswith(OBSERVATIONS):
+                seen[factor.key.removeprefix(OBSERVATIONS)] = factor.value(level)
+            elif not factor.key:
+                seen[factor.letter] = level > 0
+        found = [letter for letter, on in seen.items() if on]
+        return ''.join(found if self.default else sorted(found))
+
+    def spec(self, levels: Sequence[float]) -> RunSpec:
+        """Return the specification of the runs of a case.
+
+        Args:
+            levels: Coded, -1 or +1, one per factor.
+
+        Raises:
+            ConfigError: A factor has no key, or a level is not allowed; the text names the
+                factor, its key and what is.
+        """
+        for factor in self.factors:
+            if not factor.key:
+                raise ConfigError(
+                    f'factor {factor.letter}: no key of the specification, expected one; '
+                    'give a factor file to `plan --factors`'
+                )
+        pairs = list(zip(self.factors, levels, strict=True))
+        changes: dict[str, Any] = {}
+        for factor, level in pairs:
+            _nest(changes, factor.key.split('.'), factor.value(level))
+        source = ', '.join(f'{each.letter} {each.text(level)}' for each, level in pairs)
+        return self.base.changed(changes, f'factors {source}')
+
+
+def sensors(letters: Iterable[str]) -> Treatments:
+    """Return the experiment that varies sensors on top of article.yaml."""
+    return Treatments(default_factors(letters))
+
+
+def check_levels(factor: Factor, base: RunSpec) -> Factor:
+    """Return a factor with its levels as the specification has them.
+
+    Raises:
+        ConfigError: The key is unknown or has no value of its own, a level is not allowed, or both
+            are equal.
+    """
+    where = f'factor {factor.name!r}'
+    found = key_value(base, factor.key, where)
+    if factor.key in _PER_RUN:
+        raise ConfigError(
+            f'{where}: key {factor.key} is the same for all runs of a campaign, expected another'
+        )
+    levels = []
+    for name, level in (('low', factor.low), ('high', factor.high)):
+        source = f'{where}: {name} level'
+        if isinstance(level, bool) != isinstance(found, bool) and found is not None:
+            kind = 'true or false' if isinstance(found, bool) else f'a value such as {found!r}'
+            raise ConfigError(f'{source}: {factor.key} is {level!r}, expected {kind}')
+        levels.append(base.checked(factor.key, level, source))
+    low, high = levels
+    if low == high:
+        raise ConfigError(
+            f'{where}: low and high level of {factor.key} are both {low!r}, expected two values'
+        )
+    return Factor(factor.letter, factor.name, factor.key, low, high, factor.device)
+
+
+def key_value(base: RunSpec, key: str, where: str) -> Any:
+    """Return what a specification has under a key.
+
+    Raises:
+        ConfigError: Nothing, or a section of keys; the text names those that there are.
+    """
+    found: Any = base.to_mapping()
+    path = ''
+    for part in key.split('.'):
+        if not isinstance(found, Mapping) or part not in found:
+            raise ConfigError(f'{where}: unknown key {key!r}, {_allowed(found, path)}')
+        found, path = found[part], f'{path}{part}.'
+    if isinstance(found, Mapping):
+        raise ConfigError(f'{where}: key {key!r} is a section, {_allowed(found, path)}')
+    return found
+
+
+def _allowed(found: Any, path: str) -> str:
+    if not isinstance(found, Mapping):
+        return f'expected {path.rstrip(".")}'
+    return f'expected one of {", ".join(f"{path}{name}" for name in found)}'
+
+
+def _nest(changes: dict[str, Any], path: Sequence[str], value: Any) -> None:
+    for part in path[:-1]:
+        changes = changes.setdefault(part, {})
+    changes[path[-1]] = value

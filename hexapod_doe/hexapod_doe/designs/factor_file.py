@@ -1,0 +1,125 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Reads the factors of an experiment from a YAML file, checked against a specification."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import yaml
+from hexapod_agent.run_spec import ConfigError, RunSpec
+
+from hexapod_doe.designs.design import MAX_FACTORS, MIN_FACTORS
+from hexapod_doe.designs.factor import OBSERVATIONS, Factor, Treatments, check_levels
+from hexapod_doe.designs.terms import LETTERS
+
+_NEEDED = ('name', 'key', 'low', 'high')
+_OPTIONAL = ('device', 'letter')
+_LONGEST = 60
+"""Characters of a name, so that it fits a column."""
+
+
+def read_factors(path: Path, base: RunSpec) -> Treatments:
+    """Read a list of factors, each with name, key, low, high and perhaps device and letter.
+
+    A sensor has its own letter if the file gives none, other factors the first free ones.
+
+    Args:
+        path: The file.
+        base: The specification that the levels change.
+
+    Raises:
+        ConfigError: The file is no such list, or a factor cannot be had; the text names the file,
+            the factor, the key and what is allowed.
+        OSError: It cannot be read.
+    """
+    try:
+        entries = yaml.safe_load(path.read_text(encoding='utf-8'))
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise ConfigError(f'{path}: not YAML: {error}') from error
+    try:
+        return Treatments(factors_of(entries, base), base)
+    except ConfigError as error:
+        raise ConfigError(f'{path}: {error}') from error
+
+
+def factors_of(entries: Any, base: RunSpec) -> tuple[Factor, ...]:
+    """Return the factors of a file's entries.
+
+    Raises:
+        ConfigError: As for `read_factors`.
+    """
+    if not isinstance(entries, list) or not MIN_FACTORS <= len(entries) <= MAX_FACTORS:
+        found = f'{len(entries)} factors' if isinstance(entries, list) else 'no list'
+        raise ConfigError(
+            f'{found}, expected a list of {MIN_FACTORS} to {MAX_FACTORS} factors, each with '
+            f'{", ".join(_NEEDED)}'
+        )
+    for number, entry in enumerate(entries, 1):
+        _check_entry(entry, number)
+    letters = _letters(entries)
+    factors = [
+        Factor(
+            letter,
+            entry['name'].strip(),
+            entry['key'],
+            entry['low'],
+            entry['high'],
+            entry.get('device'),
+        )
+        for letter, entry in zip(letters, entries, strict=True)
+    ]
+    for what in ('letter', 'name', 'key'):
+        _check_different(factors, what)
+    return tuple(check_levels(factor, base) for factor in factors)
+
+
+def _check_entry(entry: Any, number: int) -> None:
+    """Refuse an entry without the keys that a factor has, or with texts that are none."""
+    if not isinstance(entry, dict):
+        raise ConfigError(f'factor {number} is {entry!r}, expected {", ".join(_NEEDED)}')
+    name = entry.get('name')
+    where = f'factor {name!r}' if 'name' in entry else f'factor {number}'
+    for key in _NEEDED:
+        if key not in entry:
+            raise ConfigError(f'{where}: no {key}, expected {", ".join(_NEEDED)}')
+    for key in entry:
+        if key not in (*_NEEDED, *_OPTIONAL):
+            raise ConfigError(
+                f'{where}: unknown entry {key!r}, expected {", ".join((*_NEEDED, *_OPTIONAL))}'
+            )
+    for key in ('name', 'key', 'device', 'letter'):
+        text = entry.get(key)
+        if key in entry and not (isinstance(text, str) and text.strip() and text.isprintable()):
+            raise ConfigError(f'{where}: {key} is {text!r}, expected a text of one line')
+    if len(entry['name']) > _LONGEST:
+        raise ConfigError(
+            f'{where}: name of {len(entry["name"])} letters, expected {_LONGEST} at most'
+        )
+    letter = entry.get('letter', 'A')
+    if letter not in tuple(LETTERS):
+        raise ConfigError(f'{where}: letter {letter!r}, expected one of {LETTERS}')
+
+
+def _letters(entries: Sequence[dict[str, Any]]) -> list[str]:
+    """Return a letter per entry: as given, or of its sensor, or the first that is free."""
+    given = [entry.get('letter') for entry in entries]
+    for place, entry in enumerate(entries):
+        own = entry['key'].removeprefix(OBSERVATIONS)
+        if given[place] is None and entry['key'] == f'{OBSERVATIONS}{own}' and own not in given:
+            given[place] = own if own in tuple(LETTERS) else None
+    free = iter([letter for letter in LETTERS if letter not in given])
+    return [letter or next(free) for letter in given]
+
+
+def _check_different(factors: Sequence[Factor], what: str) -> None:
+    seen: dict[str, Factor] = {}
+    for factor in factors:
+        value = getattr(factor, what)
+        if value in seen:
+            raise ConfigError(
+                f'factor {factor.name!r}: {what} {value} is also that of factor '
+                f'{seen[value].name!r}, expected another one for each'
+            )
+        seen[value] = factor

@@ -1,0 +1,164 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""A factor is any key of a run's specification; a file that cannot be run gives its one line."""
+
+import json
+
+import pytest
+from hexapod_agent.run_spec import RunSpec
+from hexapod_doe.campaigns.campaign import read_rows
+from hexapod_doe.designs.plan_file import read_plan
+
+from hexapod_doe import plan
+
+GOOD = """
+- {name: body orientation, key: observations.C, low: off, high: on, device: IMU}
+- {name: body height, key: observations.E, low: off, high: on}
+- {name: yaw share, key: task.yaw_share, low: 0, high: 1}
+- {name: learning rate, key: learner.actor.learning_rate, low: 1e-4, high: 2.0e-4}
+"""
+ENTRY = '{{name: yaw share, key: task.yaw_share, low: {low}, high: {high}}}'
+
+
+def written(tmp_path, text, *options):
+    """Run `plan` on a factor file and return where its plan would be."""
+    file = tmp_path / 'mine.yaml'
+    file.write_bytes(text if isinstance(text, bytes) else text.encode())
+    out = tmp_path / 'new' / 'plan.csv'
+    plan.main(['--factors', str(file), '--design', 'half', '--out', str(out), *options])
+    return out
+
+
+def test_a_row_is_the_base_with_its_levels(tmp_path):
+    out = written(tmp_path, GOOD, '--set', 'task.closeness_weight=3')
+    rows = read_rows(out)
+    assert len(rows) == 8
+    for row in rows:
+        level = {name: int(row.metadata[name]) > 0 for name in 'CEAB'}  # sensors keep theirs
+        changes = {
+            'observations': {'C': level['C'], 'E': level['E']},
+            'task': {'closeness_weight': 3.0, 'yaw_share': float(level['A'])},
+            'learner': {'actor': {'learning_rate': 2e-4 if level['B'] else 1e-4}},
+        }
+        assert row.spec == RunSpec.from_mapping(changes, 'test')
+        assert row.observations == row.spec.letters
+
+
+def test_a_plan_keeps_factors_and_base(tmp_path):
+    out = written(tmp_path, GOOD, '--set', 'task.closeness_weight=3')
+    kept = json.loads(out.with_suffix('.json').read_text())
+    assert kept['factors'][0] == {
+        'letter': 'C', 'name': 'body orientation', 'key': 'observations.C',
+        'low': False, 'high': True, 'device': 'IMU',
+    }  # fmt: skip
+    assert kept['factors'][3]['low'] == 1e-4
+    assert kept['base']['task']['closeness_weight'] == 3.0
+    read = read_plan(out)
+    assert read.factors == 'CEAB'
+    assert read.treatments.factors[2].change == 'yaw share 0 → 1'
+    assert read.treatments.factors[0].change == 'body orientation off → on'
+
+
+def test_what_follows_a_plan_has_its_factors(tmp_path):
+    out = written(tmp_path, GOOD)
+    folded, confirm = tmp_path / 'b' / 'plan.csv', tmp_path / 'c' / 'plan.csv'
+    plan.main(['fold', str(out), '--on', 'A', '--out', str(folded)])
+    plan.main(['confirm', str(out), '--sets', 'CA,none', '--out', str(confirm)])
+    for path in (folded, confirm):
+        assert read_plan(path).treatments == read_plan(out).treatments
+        assert read_plan(path).settings.predecessor == read_plan(out).fingerprint
+    assert read_rows(confirm)[0].spec.task.yaw_share == 1.0
+
+
+def test_sixteen_rows_hold_eight_factors_and_fifteen(tmp_path):
+    for count, resolution in ((8, 4), (15, 3)):
+        out = tmp_path / f'{count}.csv'
+        generated = ['--design', 'sixteenth'] if count == 8 else ['--generators', FIFTEEN]
+        plan.main(['--factors', str(count), *generated, '--out', str(out)])
+        read = read_plan(out)
+        assert (len(read.rows), len(read.factors)) == (16, count)
+        assert read.settings.resolution == resolution
+
+
+FIFTEEN = 'E=ABC,F=ABD,G=ACD,H=BCD,J=ABCD,K=AB,L=AC,M=AD,N=BC,O=BD,P=CD'  # all words of ABCD
+OTHER = '\n- {name: b, key: task.height_weight, low: 0, high: 1}'
+
+
+@pytest.mark.parametrize(
+    ('text', 'message'),
+    [
+        ('', 'no list, expected a list of 2 to 15 factors'),
+        ('[]', '0 factors, expected a list of 2 to 15 factors'),
+        ('a: [', 'not YAML'),
+        (b'- \xff', 'not YAML'),
+        ('- 3' + OTHER, 'factor 1 is 3, expected name, key, low, high'),
+        ('- {name: a, key: task.line_y, low: 0}' + OTHER, "factor 'a': no high, expected name"),
+        (
+            '- {name: a, key: task.yaw, low: 0, high: 1}' + OTHER,
+            "factor 'a': unknown key 'task.yaw', expected one of task.time_limit_steps, ",
+        ),
+        (
+            '- {name: a, key: task, low: 0, high: 1}' + OTHER,
+            "factor 'a': key 'task' is a section, expected one of task.time_limit_steps, ",
+        ),
+        (
+            '- {name: a, key: task.yaw_share, low: 0, high: fast}' + OTHER,
+            "factor 'a': high level: task.yaw_share is 'fast', expected",
+        ),
+        (
+            '- {name: a, key: task.yaw_share, low: 0, high: true}' + OTHER,
+            "factor 'a': high level: task.yaw_share is True, expected a value such as 1.0",
+        ),
+        (
+            '- {name: a, key: observations.A, low: 0, high: 1}' + OTHER,
+            "factor 'a': low level: observations.A is 0, expected true or false",
+        ),
+        (
+            '- {name: a, key: learner.ddpg.discount, low: 0.9, high: 1.5}' + OTHER,
+            "factor 'a': high level: learner.ddpg.discount is 1.5, expected",
+        ),
+        (
+            '- {name: a, key: learner.ddpg.discount, low: 0.9, high: .nan}' + OTHER,
+            "factor 'a': high level: learner.ddpg.discount is nan, expected",
+        ),
+        (
+            '- {name: a, key: task.yaw_share, low: 1, high: 1.0}' + OTHER,
+            "factor 'a': low and high level of task.yaw_share are both 1.0, expected two values",
+        ),
+        (
+            '- {name: a, key: task.height_weight, low: 1, high: 2}' + OTHER,
+            "factor 'b': key task.height_weight is also that of factor 'a', expected another",
+        ),
+        (
+            '- {name: b, key: task.yaw_share, low: 1, high: 2}' + OTHER,
+            "factor 'b': name b is also that of factor 'b', expected another",
+        ),
+        (
+            '- {name: a, letter: AB, key: task.yaw_share, low: 1, high: 2}' + OTHER,
+            "factor 'a': letter 'AB', expected one of ABCDEFGHJKLMNOP",
+        ),
+        (
+            '- {name: a, price: 3, key: task.yaw_share, low: 1, high: 2}' + OTHER,
+            "factor 'a': unknown entry 'price', expected name, key, low, high, device, letter",
+        ),
+        (
+            '- {name: a, key: training.episodes, low: 10, high: 20}' + OTHER,
+            "factor 'a': key training.episodes is the same for all runs of a campaign",
+        ),
+        (  # each level alone goes with the base, two of them not with one another
+            '- {name: a, key: learner.ddpg.update_every, low: 10, high: 20}\n'
+            '- {name: b, key: learner.ddpg.update_ratio, low: 0.5, high: 0.05}'
+            '\n- {name: c, key: task.yaw_share, low: 0, high: 1}',
+            'B b 0.05, C c 0: learner.ddpg.update_ratio is 0.05, expected a multiple of 1/10',
+        ),
+    ],
+)
+def test_a_malformed_file_gives_one_line_and_no_plan(tmp_path, capsys, text, message):
+    with pytest.raises(SystemExit) as ended:
+        written(tmp_path, text)
+    assert ended.value.code == 2
+    error = capsys.readouterr().err
+    assert message in error
+    assert error.count('\n') == 1
+    assert not (tmp_path / 'new').exists()
