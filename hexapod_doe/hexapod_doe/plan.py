@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
-from hexapod_agent.run_spec import RunSpec
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_sim.command_line import one_line
 
 from hexapod_doe.campaigns.campaign import PLAN_FILE

@@ -49,7 +49,7 @@ class Row:
         """The specification of the run.
 
         Raises:
-            hexapod_agent.run_spec.ConfigError: a factor has no key.
+            hexapod_agent.specification.run_spec.ConfigError: a factor has no key.
         """
         return self.treatments.spec(self.levels)
 

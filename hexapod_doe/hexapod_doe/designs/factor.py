@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import Any
 
 import yaml
-from hexapod_agent.run_spec import ConfigError, RunSpec
+from hexapod_agent.specification.run_spec import ConfigError, RunSpec
 from hexapod_sim.sensor_table import CHANNELS
 
 FACTORS = 'factors'

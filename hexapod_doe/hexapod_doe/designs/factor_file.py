@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import yaml
-from hexapod_agent.run_spec import ConfigError, RunSpec
+from hexapod_agent.specification.run_spec import ConfigError, RunSpec
 
 from hexapod_doe.designs.design import MAX_FACTORS, MIN_FACTORS
 from hexapod_doe.designs.factor import OBSERVATIONS, Factor, Treatments, check_levels

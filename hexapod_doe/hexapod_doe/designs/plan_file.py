@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from hexapod_agent.run_spec import RunSpec
+from hexapod_agent.specification.run_spec import RunSpec
 
 from hexapod_doe.designs.factor import Treatments, sensors
 from hexapod_doe.designs.factor_file import factors_of

@@ -6,7 +6,7 @@
 import json
 
 import pytest
-from hexapod_agent.run_spec import RunSpec
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_doe.campaigns.campaign import read_rows
 from hexapod_doe.designs.plan_file import read_plan
 
