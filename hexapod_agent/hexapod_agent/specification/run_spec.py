@@ -161,17 +161,6 @@ class RunSpec:
             value = {name: value}
         return self.changed(value, source)
 
-    def checked(self, key: str, value: Any, source: str) -> Any:
-        """Return a value as a specification has it, whether or not it goes with the other values.
-
-        Raises:
-            ConfigError: The key is unknown, or the value is allowed beside no others.
-        """
-        changes: Any = value
-        for name in reversed(key.split('.')):
-            changes = {name: changes}
-        return _validated(self.to_mapping(), changes, source).value(key)
-
     def value(self, key: str) -> Any:
         """Return one value by its dotted key.
 
@@ -198,21 +187,11 @@ _OF_THE_LEARNER = ('actor', 'critic', 'ddpg', 'noise')
 
 
 def _build(base: Mapping[str, Any], changes: Any, source: str) -> RunSpec:
-    """Validate a base with changes, each value by itself and with the others.
+    """Validate a base with changes.
 
     Raises:
         ConfigError: See `RunSpec.from_mapping`.
     """
-    spec = _validated(base, changes, source)
-    try:
-        _ = spec.learner.ddpg.group_size
-    except ValueError as error:
-        raise ConfigError(f'{source}: {error}') from error
-    return spec
-
-
-def _validated(base: Mapping[str, Any], changes: Any, source: str) -> RunSpec:
-    """Validate each value of a base with changes by itself."""
     if not isinstance(changes, Mapping):
         raise ConfigError(f'{source}: expected sections with keys, as article.yaml has them')
     changes = _modern(changes)
@@ -228,6 +207,10 @@ def _validated(base: Mapping[str, Any], changes: Any, source: str) -> RunSpec:
         raise ConfigError(
             f'{source}: {key} is {first["input"]!r}, expected: {first["msg"]}'
         ) from error
+    try:
+        _ = spec.learner.ddpg.group_size
+    except ValueError as error:
+        raise ConfigError(f'{source}: {error}') from error
     return spec
 
 

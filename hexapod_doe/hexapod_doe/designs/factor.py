@@ -6,13 +6,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, is_dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, get_args, get_type_hints
 
 import yaml
 from hexapod_agent.specification.run_spec import ConfigError, RunSpec
 from hexapod_sim.sensor_table import CHANNELS
+from pydantic import TypeAdapter, ValidationError
 
 FACTORS = 'factors'
 """Where the metadata of a bag has the factors of its plan, if they are not sensors alone."""
@@ -196,7 +197,7 @@ def check_levels(factor: Factor, base: RunSpec) -> Factor:
         if isinstance(level, bool) != isinstance(found, bool) and found is not None:
             kind = 'true or false' if isinstance(found, bool) else f'a value such as {found!r}'
             raise ConfigError(f'{source}: {factor.key} is {level!r}, expected {kind}')
-        levels.append(base.checked(factor.key, level, source))
+        levels.append(_validated(factor.key, level, source))
     low, high = levels
     if low == high:
         raise ConfigError(
@@ -220,6 +221,21 @@ def key_value(base: RunSpec, key: str, where: str) -> Any:
     if isinstance(found, Mapping):
         raise ConfigError(f'{where}: key {key!r} is a section, {_allowed(found, path)}')
     return found
+
+
+def _validated(key: str, level: Any, source: str) -> Any:
+    """Return a level as a specification has it, whether or not it goes with the other values."""
+    kind: Any = RunSpec
+    for part in key.split('.'):
+        if is_dataclass(kind):
+            kind = get_type_hints(kind, include_extras=True)[part]
+        else:  # a mapping, of channels
+            kind = get_args(kind)[1]
+    try:
+        return TypeAdapter(kind).validate_python(level)
+    except ValidationError as error:
+        message = error.errors()[0]['msg']
+        raise ConfigError(f'{source}: {key} is {level!r}, expected: {message}') from error
 
 
 def _allowed(found: Any, path: str) -> str:
