@@ -17,11 +17,12 @@ from pathlib import Path
 
 from hexapod_sim.command_line import CommandLine, file, folder, number, one_line, whole
 
-from hexapod_doe.campaigns.campaign import Row, RunSettings, read_rows
+from hexapod_doe.campaigns.campaign import RunSettings
 from hexapod_doe.campaigns.campaign_lock import campaign_lock, row_lock
 from hexapod_doe.campaigns.folder import read_progress
 from hexapod_doe.campaigns.page import write_page
 from hexapod_doe.campaigns.plan_copy import keep_config, place_plan
+from hexapod_doe.campaigns.row import Row, read_rows
 from hexapod_doe.designs.plan_file import PlanError
 
 

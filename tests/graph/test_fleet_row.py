@@ -19,8 +19,9 @@ from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_doe.bags.run_record import read_run
 from hexapod_doe.bags.verify import verify
-from hexapod_doe.campaigns.campaign import Row, RunSettings
+from hexapod_doe.campaigns.campaign import RunSettings
 from hexapod_doe.campaigns.fleet_row import FleetRow
+from hexapod_doe.campaigns.row import Row
 from hexapod_doe.designs.factor import sensors
 from hexapod_doe.nodes.recorder_node import RecorderNode
 from hexapod_doe.nodes.train_goal import train_goal

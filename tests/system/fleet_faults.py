@@ -18,9 +18,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from hexapod_doe.bags.digest import digest
-from hexapod_doe.campaigns.campaign import Row, read_rows
 from hexapod_doe.campaigns.folder import read_progress, verify_done
 from hexapod_doe.campaigns.progress import State
+from hexapod_doe.campaigns.row import Row, read_rows
 
 PLAN = ('--generators', 'C=AB', '--factors', 'ABC')
 EPISODES = 12

@@ -13,12 +13,13 @@ from typing import Self
 from hexapod_agent.learning.summary import EpisodeSummary
 from hexapod_agent.specification.run_spec import RunSpec
 
-from hexapod_doe.campaigns.campaign import Campaign, Row
+from hexapod_doe.campaigns.campaign import Campaign
 from hexapod_doe.campaigns.campaign_lock import row_lock
 from hexapod_doe.campaigns.dashboard import Dashboard
 from hexapod_doe.campaigns.failures import FailureLog, read_failures
 from hexapod_doe.campaigns.fleet_row import FleetRow
 from hexapod_doe.campaigns.page_writer import PageWriter
+from hexapod_doe.campaigns.row import Row
 from hexapod_doe.errors import CampaignError
 
 _NAME = 'fleet'

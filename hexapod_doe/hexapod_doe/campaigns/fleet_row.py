@@ -23,7 +23,7 @@ from hexapod_doe.bags.recording import Recording
 from hexapod_doe.bags.rosbag2 import OfferedQos, Topic
 from hexapod_doe.bags.run_bag import EPISODE_RESULT, RESUMED
 from hexapod_doe.bags.salvage import set_aside
-from hexapod_doe.campaigns.campaign import Row
+from hexapod_doe.campaigns.row import Row
 
 # The profile that the graph's agent offers.
 _RESULTS = Topic('/fleet/episode_result', EPISODE_RESULT, (OfferedQos(depth=1000),))

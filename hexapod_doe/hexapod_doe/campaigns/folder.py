@@ -19,9 +19,10 @@ from hexapod_doe.bags.run_bag import EPISODE_RESULT, RUN_RECORD
 from hexapod_doe.bags.run_identity import settings
 from hexapod_doe.bags.salvage import whole_records
 from hexapod_doe.bags.verify import verify
-from hexapod_doe.campaigns.campaign import PLAN_FILE, Row, read_rows
+from hexapod_doe.campaigns.campaign import PLAN_FILE
 from hexapod_doe.campaigns.failures import read_failures
 from hexapod_doe.campaigns.progress import Progress, Run, State
+from hexapod_doe.campaigns.row import Row, read_rows
 from hexapod_doe.errors import BagError, LockingError
 from hexapod_doe.file_lock import lock
 

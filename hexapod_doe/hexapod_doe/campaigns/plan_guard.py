@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from hexapod_doe.campaigns.campaign import RUNS_FOLDER, Row, rows_of
 from hexapod_doe.campaigns.campaign_lock import ROW_SUFFIX
+from hexapod_doe.campaigns.row import RUNS_FOLDER, Row, rows_of
 from hexapod_doe.designs.plan_file import PlanError, read_plan
 from hexapod_doe.designs.plan_types import Plan
 

@@ -24,7 +24,8 @@ from hexapod_sim.nodes.sim_node import SimNode
 from rclpy.signals import uninstall_signal_handlers
 from rclpy.task import Future
 
-from hexapod_doe.campaigns.campaign import Row, RunSettings
+from hexapod_doe.campaigns.campaign import RunSettings
+from hexapod_doe.campaigns.row import Row
 from hexapod_doe.nodes.recorder_node import RecorderNode
 from hexapod_doe.nodes.train_goal import train_goal
 from hexapod_doe.nodes.worker_client import WorkerClient, WorkerLostError

@@ -30,7 +30,7 @@ from hexapod_node.timers import call_every
 from rclpy.action import get_action_names_and_types
 from rclpy.task import Future
 
-from hexapod_doe.campaigns.campaign import RUNS_FOLDER, Campaign, Row, RunSettings
+from hexapod_doe.campaigns.campaign import Campaign, RunSettings
 from hexapod_doe.campaigns.campaign_lock import campaign_lock
 from hexapod_doe.campaigns.dashboard import Dashboard
 from hexapod_doe.campaigns.failures import FailureLog
@@ -38,6 +38,7 @@ from hexapod_doe.campaigns.forecast import forecast
 from hexapod_doe.campaigns.local_workers import LocalWorkers
 from hexapod_doe.campaigns.page_writer import PageWriter
 from hexapod_doe.campaigns.plan_copy import keep_config
+from hexapod_doe.campaigns.row import RUNS_FOLDER, Row
 from hexapod_doe.cores import usable_cores
 from hexapod_doe.errors import CampaignError
 from hexapod_doe.nodes.train_goal import train_goal

@@ -8,7 +8,8 @@ from __future__ import annotations
 from diagnostic_msgs.msg import KeyValue
 from hexapod_interfaces.action import TrainRun
 
-from hexapod_doe.campaigns.campaign import Row, RunSettings
+from hexapod_doe.campaigns.campaign import RunSettings
+from hexapod_doe.campaigns.row import Row
 
 
 def train_goal(row: Row, settings: RunSettings) -> TrainRun.Goal:

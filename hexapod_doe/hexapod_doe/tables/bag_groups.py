@@ -14,7 +14,8 @@ from pathlib import Path
 from hexapod_doe.bags.bag_state import sound_metadata
 from hexapod_doe.bags.run_identity import differences, run_identity
 from hexapod_doe.bags.run_record import RunRecord, read_run
-from hexapod_doe.campaigns.campaign import PLAN_FILE, rows_of
+from hexapod_doe.campaigns.campaign import PLAN_FILE
+from hexapod_doe.campaigns.row import rows_of
 from hexapod_doe.designs.plan_file import PlanError, read_plan
 from hexapod_doe.designs.plan_types import Plan, PlanSettings
 from hexapod_doe.errors import BagError, TableError, UnfinishedError

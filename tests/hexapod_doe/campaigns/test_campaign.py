@@ -9,8 +9,9 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from hexapod_doe.campaigns.campaign import Campaign, Row
+from hexapod_doe.campaigns.campaign import Campaign
 from hexapod_doe.campaigns.campaign_lock import campaign_lock
+from hexapod_doe.campaigns.row import Row
 from hexapod_doe.designs.factor import sensors
 from hexapod_doe.errors import CampaignError
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from hexapod_doe.campaign_status import main as campaign_status
-from hexapod_doe.campaigns.campaign import read_rows
+from hexapod_doe.campaigns.row import read_rows
 
 from hexapod_doe import analyze, plan
 

@@ -5,7 +5,8 @@
 
 import pytest
 from hexapod_doe.campaign_status import main as campaign_status
-from hexapod_doe.campaigns.campaign import Campaign, read_rows
+from hexapod_doe.campaigns.campaign import Campaign
+from hexapod_doe.campaigns.row import read_rows
 from hexapod_doe.errors import CampaignError
 
 from hexapod_doe import plan, run_case, run_fleet

@@ -7,7 +7,7 @@ import json
 
 import pytest
 from hexapod_agent.specification.run_spec import RunSpec
-from hexapod_doe.campaigns.campaign import read_rows
+from hexapod_doe.campaigns.row import read_rows
 from hexapod_doe.designs.plan_file import read_plan
 
 from hexapod_doe import plan

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from hexapod_doe.campaigns.campaign import read_rows
+from hexapod_doe.campaigns.row import read_rows
 from hexapod_doe.errors import TableError
 from hexapod_doe.tables.bag_table import read_bags
 
