@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -e -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help setup other-ros demo test test-slow lint type format bench film clean clean-demo
+.PHONY: help setup other-ros demo test test-slow lint type format bench bench-learner film clean clean-demo
 
 VENV ?= .venv
 PACKAGES := hexapod_sim hexapod_cpg hexapod_agent hexapod_doe
@@ -65,8 +65,20 @@ type: setup  ## check types
 format: setup  ## rewrite the code in the project's style
 	@$(ENTER); ruff check --fix-only . ; ruff format .
 
-bench: setup  ## measure speed, as ratios within one run
-	@$(ENTER); for bench in tests/benchmarks/bench_*.py; do echo "== $$bench"; python $$bench || exit 1; done
+bench: setup bench-learner  ## measure speed, as ratios within one run
+	@$(ENTER); for bench in $(filter-out %/bench_learner.py,$(wildcard tests/benchmarks/bench_*.py)); do \
+		echo "== $$bench"; python $$bench || exit 1; done
+
+bench-learner: setup $(VENV)-bench/.ready  ## time an update beside those of other learners
+	@$(ENTER); python tests/benchmarks/bench_learner.py --peers $(abspath $(VENV))-bench/bin/python
+
+# PyTorch and stable-baselines3 are those of $(VENV); what else the others need stays out of it.
+$(VENV)-bench/.ready: $(VENV)/.ready requirements-bench.txt
+	@$(VENV)/bin/python -m venv $(VENV)-bench
+	@$(VENV)/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))' \
+		> "$$($(VENV)-bench/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/product.pth"
+	@$(VENV)-bench/bin/python -m pip install --quiet --disable-pip-version-check -r requirements-bench.txt -c constraints.txt
+	@touch $@
 
 film: setup  ## film the robot on its way, without a display
 	@$(ENTER); ros2 run hexapod_agent film ros_ws/src/hexapod_bringup/agents/ABCDE.pt --out walk.gif --strip docs/images/walk.png \

@@ -1,18 +1,28 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Time of one update on one core, against its bare matrix products and against stable-baselines3.
+"""Time of one update on one core, beside other learners' and its bare matrix products.
 
-Run: `python tests/benchmarks/bench_learner.py`. Sizes are those of ABCDE: 108 observations, 30
-actions, hidden layers of 400 and 300, batches of 128, updates in groups as article.yaml has them.
-stable-baselines3 is timed where it can be imported, in groups of the same size. Times are
-processor time, the best of several rounds: other load only ever adds.
+Run: `make bench-learner`, or `python tests/benchmarks/bench_learner.py` for ours alone. Sizes are
+those of ABCDE: 108 observations, 30 actions, hidden layers of 400 and 300, batches of 128, updates
+in groups as article.yaml has them. The others live in an environment of their own
+(requirements-bench.txt) and are run one after another in this run: stable-baselines3 (PyTorch),
+sbx (JAX, a group of updates in one compiled loop) and RLtools (C++). RLtools has neither DDPG nor
+layers of unequal width: it is compared with our DDPG of two critics, both with hidden layers of
+350. All are held to one core; times are processor time, the best of several rounds: other load
+only ever adds. GFLOP/s counts the matrix products of the formulas alone.
 """
 
+import argparse
+import json
+import os
+import subprocess
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
 
-import numpy as np
+import stable_baselines3
 import torch
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.learning.training import Trainer
@@ -21,11 +31,8 @@ from hexapod_cpg.mapping import ACTION_SIZE
 from rich.console import Console
 from rich.table import Table
 
-try:
-    import stable_baselines3
-except ImportError:
-    stable_baselines3 = None
-
+PEERS = Path(__file__).parent / 'peers'
+WIDTH = 350
 ROUNDS, REPEATS = 15, 50
 
 
@@ -40,41 +47,77 @@ def milliseconds(call: Callable[[], object], repeats: int = REPEATS) -> float:
     return best * 1e3
 
 
-def matrix_products(batch: int, sizes: tuple[int, int, int, int]) -> Callable[[], None]:
-    """Every product that the formulas of one update need, and nothing else.
+Shapes = list[tuple[int, int, int]]
 
-    Forward: target actor, target critic, critic, actor, critic again. Back: all weights of the
-    critic, the critic's action branch, all weights of the actor.
+
+def update_products(batch: int, sizes: Sequence[int], critics: int = 1) -> Shapes:
+    """Rows, inner size and columns of every product that the formulas of one update need.
+
+    Forward: target actor, target critics, critics, actor, one critic again. Back: all weights of
+    the critics, one critic's action branch, all weights of the actor.
     """
     observation, first, second, action = sizes
-    x, h1, h2 = (torch.randn(batch, n) for n in (observation, first, second))
-    a, q = torch.randn(batch, action), torch.randn(batch, 1)
-    w1, w2 = torch.randn(first, observation), torch.randn(second, first)
-    wa, w3, wq = torch.randn(second, action), torch.randn(action, second), torch.randn(1, second)
-    actor = [(x, w1.T), (h1, w2.T), (h2, w3.T)]
-    critic = [(x, w1.T), (h1, w2.T), (a, wa.T), (h2, wq.T)]
-    critic_back = [(q.T, h2), (q, wq), (h2.T, a), (h2.T, h1), (h2, w2), (h1.T, x)]
-    action_back = [(q, wq), (h2, wa)]
-    actor_back = [(a.T, h2), (a, w3), (h2.T, h1), (h2, w2), (h1.T, x)]
-    products = [*actor, *critic, *critic, *critic_back, *actor, *critic, *action_back, *actor_back]
-    pairs = [(left, right, torch.empty(left.shape[0], right.shape[1])) for left, right in products]
+    actor = [(batch, observation, first), (batch, first, second), (batch, second, action)]
+    critic = [*actor[:2], (batch, action, second), (batch, second, 1)]
+    hidden_back = [(second, batch, first), (batch, second, first), (first, batch, observation)]
+    action_back = [(batch, 1, second), (batch, second, action)]
+    critic_back = [(1, batch, second), (batch, 1, second), (second, batch, action), *hidden_back]
+    actor_back = [(action, batch, second), (batch, action, second), *hidden_back]
+    return [
+        *actor, *(critic * 2 + critic_back) * critics, *actor, *critic, *action_back, *actor_back,
+    ]  # fmt: skip
 
-    def multiply() -> None:
-        for left, right, out in pairs:
+
+def multiply(shapes: Shapes) -> Callable[[], None]:
+    """Return a call of these products, and of nothing else."""
+    operands = [
+        (torch.randn(rows, inner), torch.randn(inner, columns), torch.empty(rows, columns))
+        for rows, inner, columns in shapes
+    ]
+
+    def run() -> None:
+        for left, right, out in operands:
             torch.mm(left, right, out=out)
 
-    return multiply
+    return run
 
 
-def full_trainer(precision: str, letters: str = 'ABCDE') -> tuple[Trainer, HexapodLine]:
-    """A trainer with a group of updates due, and its environment."""
-    config = RunSpec.from_mapping({'training': {'precision': precision}}, 'benchmark')
-    trainer, env = Trainer(config.observing(letters), 1), HexapodLine(letters, config)
+def gflop(shapes: Shapes) -> float:
+    """Return the multiplications and additions of these products, in 1e9."""
+    return sum(2e-9 * rows * inner * columns for rows, inner, columns in shapes)
+
+
+def full_trainer(changes: dict[str, Any]) -> tuple[Trainer, HexapodLine]:
+    """A trainer of ABCDE with a group of updates due, and its environment."""
+    config = RunSpec.from_mapping(changes, 'benchmark').observing('ABCDE')
+    trainer, env = Trainer(config, 1), HexapodLine('ABCDE', config)
     observation, _ = env.reset(seed=1)
     trainer.begin_episode(0)
     for _ in range(config.task.time_limit_steps):
         observation, *_ = env.step(trainer.observe(observation, env.outcome))
     return trainer, env
+
+
+def time_ours(changes: dict[str, Any]) -> float:
+    """One update of ours, in ms."""
+    trainer, _ = full_trainer(changes)
+    trainer.learn()
+    return milliseconds(trainer.learn, 3) / trainer.due
+
+
+def time_peer(python: Path, script: str, sizes: dict[str, Any]) -> float | str:
+    """One update of another learner, in ms; or the last line of what it said instead."""
+    one_thread = {
+        'OMP_NUM_THREADS': '1',
+        'MKL_NUM_THREADS': '1',
+        'XLA_FLAGS': '--xla_cpu_multi_thread_eigen=false',
+    }
+    done = subprocess.run(
+        [python, PEERS / script, json.dumps(sizes)],
+        capture_output=True, text=True, check=False, env=os.environ | one_thread,
+    )  # fmt: skip
+    lines = (done.stdout if done.returncode == 0 else done.stderr).strip().splitlines()
+    return float(lines[-1]) if done.returncode == 0 else (lines or ['ended without a word'])[-1]
 
 
 def time_baseline(trainer: Trainer, env: HexapodLine) -> float:
@@ -92,29 +135,58 @@ def time_baseline(trainer: Trainer, env: HexapodLine) -> float:
 
 
 def main() -> None:
-    """Print the table."""
-    updates = {}
-    for precision in ('float32', 'float32_fast', 'bfloat16'):
-        trainer, env = full_trainer(precision)
-        trainer.learn()
-        updates[precision] = milliseconds(trainer.learn, 3) / trainer.due
-    config = trainer.config
-    sizes = (trainer.spec.size, *config.learner.actor.hidden, ACTION_SIZE)
-    multiply = matrix_products(config.learner.ddpg.batch_size, sizes)
-    references = {'its matrix products alone, float32_fast': milliseconds(multiply)}
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description='time of one update of several learners')
+    parser.add_argument('--peers', type=Path, metavar='PYTHON', help='of their environment')
+    peers = parser.parse_args().peers
+    os.sched_setaffinity(0, [min(os.sched_getaffinity(0))])
+    precisions = {
+        f'ours, {name}': {'training': {'precision': name}}
+        for name in ('float32', 'float32_fast', 'bfloat16')
+    }
+    ours: dict[str, float | str] = {name: time_ours(each) for name, each in precisions.items()}
+    trainer, env = full_trainer(precisions['ours, float32_fast'])
+    learner = trainer.config.learner
+    layers = {'actor': list(learner.actor.hidden), 'critic': list(learner.critic.hidden)}
+    sizes = (trainer.spec.size, *learner.actor.hidden, ACTION_SIZE)
+    shapes = update_products(learner.ddpg.batch_size, sizes)
+    references: dict[str, float | str] = {}
+    asked = {
+        'observation': trainer.spec.size, 'action': ACTION_SIZE, 'batch': learner.ddpg.batch_size,
+        'group': learner.ddpg.group_size, 'rounds': ROUNDS, 'width': WIDTH, **layers,
+    }  # fmt: skip
+    if peers:
+        references['sbx, DDPG'] = time_peer(peers, 'sbx_ddpg.py', asked)
+    references[f'stable-baselines3 {stable_baselines3.__version__}, DDPG'] = time_baseline(
+        trainer, env
+    )
+    references['bare products, float32_fast'] = milliseconds(multiply(shapes))
     torch.set_float32_matmul_precision('highest')
-    references["the same by torch's default, float32"] = milliseconds(multiply)
-    if stable_baselines3:
-        name = f'update of stable-baselines3 {stable_baselines3.__version__}'
-        references[name] = time_baseline(trainer, env)
-    action = np.zeros(ACTION_SIZE, np.float32)
-    env.reset(seed=1)
-    references['step of the environment'] = milliseconds(lambda: env.step(action), 40)
+    references["bare products, torch's default"] = milliseconds(multiply(shapes))
+    show('DDPG, hidden layers of 400 and 300', ours, references, gflop(shapes))
+    if peers:
+        square = {'hidden': [WIDTH, WIDTH]}
+        twin = {'learner': {'actor': square, 'critic': square | {'twin': True}}}
+        shapes = update_products(learner.ddpg.batch_size, (sizes[0], WIDTH, WIDTH, ACTION_SIZE), 2)
+        show(
+            f'two critics, hidden layers of {WIDTH}',
+            {name: time_ours(each | twin) for name, each in precisions.items()},
+            {'RLtools, TD3': time_peer(peers, 'rltools_td3.py', asked)},
+            gflop(shapes),
+        )
 
-    table = Table('one core, ms', 'time', *(f'{name} / this' for name in updates))
-    for name, time_ms in (updates | references).items():
-        ratios = (f'{update / time_ms:.2f}' for update in updates.values())
-        table.add_row(name, f'{time_ms:.2f}', *ratios)
+
+def show(
+    title: str, ours: dict[str, float | str], others: dict[str, float | str], work: float
+) -> None:
+    """Print times, what they make of the work, and how many times ours each of them takes."""
+    table = Table(title, 'ms', 'GFLOP/s', *(f'x {name.split(", ")[1]}' for name in ours))
+    for name, time_ms in (ours | others).items():
+        if isinstance(time_ms, str):
+            table.add_row(name, time_ms)
+            continue
+        ratios = (f'{time_ms / float(mine):.2f}' for mine in ours.values())
+        table.add_row(name, f'{time_ms:.2f}', f'{work / time_ms * 1e3:.0f}', *ratios)
     Console().print(table)
 
 

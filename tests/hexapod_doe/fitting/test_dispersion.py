@@ -14,13 +14,14 @@ from hexapod_doe.studies.simulated import repeated_levels
 from statsmodels.regression.linear_model import OLS
 
 LEVELS = repeated_levels(fraction('quarter'), 5)
+TERMS = estimable_terms(LEVELS, 2)
 
 
 def fit_of(ratio: float, seed: int = 1) -> Fit:
     """A fit of runs whose deviation is 20, and `ratio` times that with C."""
     deviation = np.where(LEVELS['C'] > 0, 20 * ratio, 20)
     noise = np.random.default_rng(seed).normal(0, deviation)
-    return ols(LEVELS, 400 + 50 * LEVELS['A'] + noise, estimable_terms(LEVELS, 2))
+    return ols(LEVELS, 400 + 50 * LEVELS['A'] + noise, TERMS)
 
 
 def test_a_factor_that_changes_the_spread_is_found() -> None:
