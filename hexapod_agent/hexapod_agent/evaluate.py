@@ -46,6 +46,9 @@ _ROWS = (
 )
 
 
+_MEASURED = ('joint_states', 'joint_torques', 'line_offset')
+
+
 def main(args: Sequence[str] | None = None) -> None:
     """Evaluate what the command line names, and print a table."""
     parser = _parser()
@@ -106,6 +109,7 @@ def _subject(options: argparse.Namespace) -> tuple[str, Iterator[Episode]]:
         letters = trainer.spec.letters
         name = f'{letters or "no optional channel"}, {trainer.episode} episodes'
         if options.graph:
+            _check_measured(trainer.config)
             return name, _on_graph(options)
         env, policy = HexapodLine(letters, trainer.config), trained_policy(trainer.agent)
         return name, _in_environment(env, policy, options)
@@ -129,6 +133,16 @@ def _in_environment(
     env: HexapodLine, policy: Policy, options: argparse.Namespace
 ) -> Iterator[Episode]:
     return (run_episode(env, policy, options.seed, start) for start in range(options.starts))
+
+
+def _check_measured(spec: RunSpec) -> None:
+    """Refuse to measure by sensors that are not perfect."""
+    bad = [key for key in _MEASURED if not spec.sensors[key].perfect]
+    if bad:
+        raise GraphError(
+            f'--graph: figures are measured by the topics of {", ".join(bad)}, whose errors the '
+            'specification asks for; expected perfect ones, or no --graph'
+        )
 
 
 def _on_graph(options: argparse.Namespace) -> Iterator[Episode]:

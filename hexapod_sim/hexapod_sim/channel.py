@@ -40,6 +40,7 @@ class Field:
         model_sensors: Sensors of hexapod.xml that it is read from, of all topics, in a row; by
             default the one that bears the name of the reading.
         convert: Makes the reading (topics * size numbers) of those sensors' numbers.
+        single: Whether the message carries float32, to which every path then rounds.
     """
 
     path: str
@@ -52,6 +53,16 @@ class Field:
     kind: Kind = 'vector'
     model_sensors: tuple[str, ...] = ()
     convert: Callable[[Numbers], Numbers] | None = None
+    single: bool = False
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """Sensors of hexapod.xml that the reading is made of."""
+        return self.model_sensors or (self.reading,)
+
+    def carried(self, numbers: Numbers) -> Numbers:
+        """Return the numbers that are left of these in a message."""
+        return numbers.astype(np.float32).astype(np.float64) if self.single else numbers
 
 
 @dataclass(frozen=True)
@@ -104,7 +115,7 @@ class Channel:
     constants: Mapping[str, Any] = field(default_factory=dict)
     derived: Derived | None = None
 
-    @property
+    @cached_property
     def key(self) -> str:
         """Name of the channel in a specification, such as 'imu_data'."""
         return self.device_topic.replace('/', '_')
@@ -114,6 +125,11 @@ class Channel:
         """Topic of its device; of several topics, what their names have in common."""
         topic = self.topics[0]
         return topic.rsplit('/', 1)[0] if len(self.topics) > 1 else topic
+
+    @property
+    def is_measured(self) -> bool:
+        """Whether it comes from a device, which the sim or a driver stands for."""
+        return self.source in ('robot', 'task')
 
     @cached_property
     def has_joints(self) -> bool:

@@ -1,115 +1,142 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What a device adds to the truth: bias, noise and quantisation of one reading, from a seed."""
+"""What a device makes of the truth: errors, samples that are late, rare or lost, from a seed."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+import zlib
+from collections import deque
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hexapod_sim.channel import Kind
+from hexapod_sim.channel import Channel, Field, Numbers
+from hexapod_sim.quality import Quality
 
-_MOST_NUMBERS = 18  # of one reading: the joints
 _MOST_STEPS = 2.0**52
-# A unit quaternion has a number of at least this size, so that its rounding is not zero.
-_COARSEST_ORIENTATION = 0.5
+_ROUNDING = 1e-9  # of a time that is a whole number of periods
 
-
-@dataclass(frozen=True)
-class Distortion:
-    """Errors of a reading, in its unit; of an orientation, as rotation about the body's axes."""
-
-    noise: float = 0.0
-    """Standard deviation of the error of each sample. Of a switch: chance to read the opposite."""
-    bias: float = 0.0
-    """Standard deviation of the error that is constant, drawn once for each number."""
-    step: float = 0.0
-    """Distance of the values that the device can give; 0 for any value."""
-
-    def __post_init__(self) -> None:
-        """Refuse what is negative or not a number."""
-        for name, value in vars(self).items():
-            if not 0.0 <= value < np.inf:
-                raise ValueError(f'{name} {value}: expected a number that is not negative')
-
-    @property
-    def exact(self) -> bool:
-        """Whether readings pass unchanged."""
-        return not (self.noise or self.bias or self.step)
+Readings = Mapping[str, Numbers]
 
 
 class Degradation:
-    """One device's reading: the same seed and stamp give the same error, whatever came between.
+    """The device of one topic during one episode.
 
-    The generator is Philox, whose stream is addressed by a counter (Salmon et al. 2011, "Parallel
-    random numbers: as easy as 1, 2, 3").
+    Its errors depend on the seed, the topic and the count of samples alone: on no other channel,
+    and noise not on what is lost. It begins with a good sample, whatever its delay and dropout.
+
+    Attributes:
+        newest: Readings that arrived last.
+        stamp_ns: When they were measured.
+        lost: Count of samples that were dropped.
     """
 
-    def __init__(self, distortion: Distortion, kind: Kind, seed: int, stream: int = 0) -> None:
-        """Draw the constant error.
+    def __init__(self, channel: Channel, topic: str, quality: Quality, seed: int) -> None:
+        """Begin before the first sample.
 
         Args:
-            distortion: how large the errors are.
-            kind: what they do to the numbers.
-            seed: of all that is random.
-            stream: tells apart readings that share a seed.
-
-        Raises:
-            ValueError: the steps of an orientation are too coarse to be one.
+            channel: The topic's.
+            topic: Its relative name, which tells it apart from others of the same seed.
+            quality: How good the device is.
+            seed: Of all that is random, such as an episode's.
         """
-        if kind == 'quaternion' and distortion.step > _COARSEST_ORIENTATION:
-            raise ValueError(
-                f'step {distortion.step}: expected at most {_COARSEST_ORIENTATION} for an '
-                'orientation'
-            )
-        self._distortion = distortion
-        self._kind = kind
-        self._key = np.array([seed, stream], dtype=np.uint64)
-        # The constant error is that of a time that no sample has.
-        constant = self._generator(0, constant=True).standard_normal(_MOST_NUMBERS)
-        self._bias = distortion.bias * constant
+        root = np.random.SeedSequence(seed, spawn_key=(zlib.crc32(topic.encode()),))
+        biases, noise, self._losses = map(np.random.default_rng, root.spawn(3))
+        first = channel.observed[0]
+        self._errors = [
+            _FieldErrors(field, quality, field.scale / first.scale, biases, noise)
+            for field in channel.observed
+        ]
+        self._quality = quality
+        self._start_ns: int | None = None
+        self._turn = 0
+        self._under_way: deque[tuple[int, Readings]] = deque()
+        self.newest: Readings = {}
+        self.stamp_ns = 0
+        self.lost = 0
 
-    def apply(self, values: NDArray[np.float64], stamp_ns: int) -> NDArray[np.float64]:
-        """Return what the device reads where the truth is `values`.
+    def sample(self, stamp_ns: int, truth: Readings) -> bool:
+        """Measure, and return whether a sample has arrived since.
 
         Args:
-            values: (n,), or (4,) x y z w of an orientation, or switches (n,) of 0 and 1.
-            stamp_ns: time of the sample.
+            stamp_ns: Time of now.
+            truth: Readings of the fields, as a message of the topic has them.
         """
-        if self._distortion.exact:
+        measured = {**truth, **{e.field.reading: e.apply(truth) for e in self._errors}}
+        due = self._due(stamp_ns)
+        lost = self._losses.random() < self._quality.dropout
+        self.lost += due and lost
+        # Time went back, or a stamp was wrong: nobody waits for what lies ahead of it.
+        while self._under_way and self._under_way[-1][0] > stamp_ns:
+            self._under_way.pop()
+        if due and not lost:
+            self._under_way.append((stamp_ns, measured))
+        arrived = False
+        while self._under_way and self._under_way[0][0] <= stamp_ns - self._delay_ns:
+            self.stamp_ns, self.newest = self._under_way.popleft()
+            arrived = True
+        if not self.newest:
+            self.stamp_ns, self.newest = stamp_ns, measured
+        return arrived
+
+    @property
+    def _delay_ns(self) -> int:
+        return round(self._quality.delay * 1e9)
+
+    def _due(self, stamp_ns: int) -> bool:
+        """Return whether the device measures now: the first time in a period of its own."""
+        if self._start_ns is None:
+            self._start_ns = stamp_ns
+            return True
+        if not self._quality.rate:
+            return True
+        elapsed = (stamp_ns - self._start_ns) * 1e-9
+        before, self._turn = self._turn, math.floor(elapsed * self._quality.rate + _ROUNDING)
+        return self._turn != before
+
+
+class _FieldErrors:
+    """Errors of one field's numbers; without any, these pass bit for bit."""
+
+    def __init__(
+        self,
+        field: Field,
+        quality: Quality,
+        share: float,
+        biases: np.random.Generator,
+        noise: np.random.Generator,
+    ) -> None:
+        self.field = field
+        self._noise, self._step = share * quality.noise, share * quality.quantisation
+        self._size = 3 if field.kind == 'quaternion' else field.size
+        self._bias = share * quality.bias * biases.standard_normal(self._size)
+        self._exact = not (quality.noise or quality.bias or quality.quantisation)
+        self._random = noise
+
+    def apply(self, truth: Readings) -> Numbers:
+        values = truth[self.field.reading]
+        if self._exact:
             return values
-        if self._kind == 'switch':
-            flipped = self._generator(stamp_ns).random(values.size) < self._distortion.noise
+        if self.field.kind == 'switch':
+            flipped = self._random.random(values.size) < self._noise
             return np.where(flipped, 1.0 - values, values)
-        if self._kind == 'quaternion':
-            return self._turn(values, stamp_ns)
-        return self._quantise(values + self._error(values.size, stamp_ns))
+        error = self._bias + self._noise * self._random.standard_normal(self._size)
+        if self.field.kind == 'quaternion':
+            turned = self._quantised(multiply(values, from_rotation(error)))
+            return turned / np.linalg.norm(turned)  # devices give the norm 1
+        return self.field.carried(self._quantised(values + error))
 
-    def _turn(self, q: NDArray[np.float64], stamp_ns: int) -> NDArray[np.float64]:
-        """Turn an orientation by an error, and give it the norm 1 that devices give."""
-        turned = self._quantise(multiply(q, from_rotation(self._error(3, stamp_ns))))
-        return turned / np.linalg.norm(turned)
-
-    def _error(self, size: int, stamp_ns: int) -> NDArray[np.float64]:
-        sample = self._generator(stamp_ns).standard_normal(size)
-        return self._bias[:size] + self._distortion.noise * sample
-
-    def _quantise(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        if not self._distortion.step:
+    def _quantised(self, values: Numbers) -> Numbers:
+        if not self._step:
             return values
         with np.errstate(over='ignore'):
-            steps = values / self._distortion.step
+            steps = values / self._step
         # Beyond that many steps, neighbouring doubles are further apart than the steps.
         fine = np.abs(steps) >= _MOST_STEPS
-        return np.where(fine, values, self._distortion.step * np.round(steps))
-
-    def _generator(self, stamp_ns: int, constant: bool = False) -> np.random.Generator:
-        """Return the generator of a sample; the low words of the counter are its own draws."""
-        counter = np.array([0, 0, stamp_ns, int(constant)], dtype=np.uint64)
-        return np.random.Generator(np.random.Philox(key=self._key, counter=counter))
+        return np.where(fine, values, self._step * np.round(steps))
 
 
 def from_rotation(rotation: NDArray[np.float64]) -> NDArray[np.float64]:

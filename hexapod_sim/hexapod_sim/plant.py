@@ -63,6 +63,7 @@ class Plant:
             return self._outcome
         try:
             self._task.simulation.advance(targets)
+            self._task.sensors.sample()
         except SimulationDivergedError:
             return self.reset(self._seed, self._task.config)
         return self._outcome

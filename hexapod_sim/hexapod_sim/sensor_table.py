@@ -56,11 +56,10 @@ def _x_y_z_w(wxyz: Numbers) -> Numbers:
 def _distance(ray: Numbers) -> Numbers:
     """Return the range finder's distance [m], the end of its range where it sees nothing.
 
-    MuJoCo gives -1 where the ray meets nothing. sensor_msgs/Range carries float32, so every path
-    sees the number rounded to it.
+    MuJoCo gives -1 where the ray meets nothing.
     """
     seen = 0.0 <= ray[0] <= HEIGHT_RANGE_MAX
-    return np.array([np.float32(ray[0] if seen else HEIGHT_RANGE_MAX)], dtype=np.float64)
+    return ray.copy() if seen else np.array([HEIGHT_RANGE_MAX])
 
 
 def _force(feet: Numbers) -> Numbers:
@@ -141,7 +140,8 @@ CHANNELS = (
     ),
     Channel(
         'E', 'body height', ('body/height',), 'sensor_msgs/msg/Range',
-        (Field('range', 'height', 1, 'm', 0.05, HEIGHT_RANGE_MAX, 0.13, convert=_distance),),
+        (Field('range', 'height', 1, 'm', 0.05, HEIGHT_RANGE_MAX, 0.13, convert=_distance,
+               single=True),),
         'range finder', frames=(HEIGHT_FRAME,),
         constants={'radiation_type': _INFRARED, 'field_of_view': 0.44, 'min_range': 0.02,
                    'max_range': HEIGHT_RANGE_MAX},
@@ -161,3 +161,12 @@ CHANNELS = (
     ),
 )  # fmt: skip
 LETTERS = ''.join(channel.letter for channel in CHANNELS)
+SENSORS = {channel.key: channel for channel in CHANNELS if channel.is_measured}
+"""Channels that a device measures, by key: what can be noisy, late or replaced by a driver."""
+MEASURED: dict[str, Field] = {
+    field.reading: field
+    for channel in CHANNELS
+    if channel.source == 'robot'
+    for field in channel.fields
+}
+"""What is read from the model's sensors, by reading."""

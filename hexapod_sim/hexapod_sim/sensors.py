@@ -1,29 +1,21 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Readings of the robot's sensors, from MuJoCo's sensor array to the fields of the table."""
+"""Readings of the robot's sensors, from MuJoCo's sensor array to what their devices deliver."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING
+from collections.abc import Iterable
+from typing import Protocol
 
-from hexapod_sim.channel import Channel, Field, Numbers
-from hexapod_sim.sensor_table import CHANNELS
+import numpy as np
 
-if TYPE_CHECKING:
-    from hexapod_sim.simulation import Simulation
-
-_FIELDS: dict[str, Field] = {
-    field.reading: field
-    for channel in CHANNELS
-    if channel.source == 'robot'
-    for field in channel.fields
-}
-READINGS = tuple(_FIELDS)
-"""What can be read from a simulated robot."""
-MODEL_SENSORS = {reading: field.model_sensors or (reading,) for reading, field in _FIELDS.items()}
-"""Names of the model's sensors that each reading is made of."""
+from hexapod_sim.channel import Channel, Numbers
+from hexapod_sim.degradation import Degradation
+from hexapod_sim.quality import Qualities
+from hexapod_sim.robot import CONTROL_PERIOD_NS
+from hexapod_sim.sensor_table import MEASURED, SENSORS
+from hexapod_sim.simulation import Simulation
 
 
 def read(simulation: Simulation, readings: Iterable[str]) -> dict[str, Numbers]:
@@ -31,38 +23,90 @@ def read(simulation: Simulation, readings: Iterable[str]) -> dict[str, Numbers]:
 
     Args:
         simulation: The robot to read.
-        readings: Names out of `READINGS`.
+        readings: Keys of `MEASURED`.
 
     Raises:
         ValueError: A reading is not known.
     """
     try:
-        return {reading: _READERS[reading](simulation) for reading in readings}
+        return {reading: _read(simulation, reading) for reading in readings}
     except KeyError as error:
         raise ValueError(
-            f'sensor reading {error.args[0]!r}: expected one of {", ".join(READINGS)}'
+            f'sensor reading {error.args[0]!r}: expected one of {", ".join(MEASURED)}'
         ) from None
 
 
-def observe(simulation: Simulation, channels: Iterable[Channel]) -> dict[str, Numbers]:
-    """Return what an agent observes of those channels that are sensors of the robot, by name."""
-    observed: dict[str, Numbers] = {}
-    for channel in channels:
+def _read(simulation: Simulation, reading: str) -> Numbers:
+    """Copy a field's part of the sensor array and convert it."""
+    field = MEASURED[reading]
+    block: Numbers = simulation.data.sensordata[simulation.sensor_blocks[reading]]
+    return field.carried(block.copy() if field.convert is None else field.convert(block))
+
+
+class Measurable(Protocol):
+    """What the devices measure: a robot, and where it is."""
+
+    simulation: Simulation
+
+    @property
+    def line_offset(self) -> float:
+        """Distance from the line [m]."""
+
+
+class Sensors:
+    """The devices of a robot: what they deliver in each control period, whoever listens.
+
+    A perfect device delivers the truth of now. Any other has its sample in every period as well:
+    where one is late, lost or left out, the newest that arrived stands in.
+
+    Attributes:
+        qualities: How good the devices are; a change counts from the next episode.
+    """
+
+    def __init__(self, measured: Measurable, qualities: Qualities | None = None) -> None:
+        self.qualities = qualities or {}
+        self._measured = measured
+        self._devices: dict[str, list[Degradation]] = {}
+        self._time_ns = 0
+
+    def begin(self, seed: int) -> None:
+        """Begin an episode, whose seed is that of all errors, and take its first sample."""
+        self._time_ns = -CONTROL_PERIOD_NS
+        self._devices = {
+            key: [Degradation(SENSORS[key], t, quality, seed) for t in SENSORS[key].topics]
+            for key, quality in self.qualities.items()
+            if not quality.perfect
+        }
+        self.sample()
+
+    def sample(self) -> None:
+        """Let the devices measure at the end of a control period."""
+        self._time_ns += CONTROL_PERIOD_NS
+        for key, devices in self._devices.items():
+            truth = self._all_true(SENSORS[key])
+            for index, device in enumerate(devices):
+                rows = {name: row[index] for name, row in truth.items()}
+                device.sample(self._time_ns, truth if len(devices) == 1 else rows)
+
+    def read(self, channel: Channel) -> dict[str, Numbers]:
+        """Return what a channel's devices deliver now, by reading of all its fields."""
+        devices = self._devices.get(channel.key)
+        if devices is None:
+            return self._all_true(channel)
+        if len(devices) == 1:
+            return dict(devices[0].newest)
+        return {name: np.array([d.newest[name] for d in devices]) for name in devices[0].newest}
+
+    def observe(self, channels: Iterable[Channel]) -> dict[str, Numbers]:
+        """Return what an agent observes of those channels that devices measure, by quantity."""
+        observed: dict[str, Numbers] = {}
+        for channel in channels:
+            if channel.is_measured:
+                observed |= channel.observe(self.read(channel))
+        return observed
+
+    def _all_true(self, channel: Channel) -> dict[str, Numbers]:
+        """Return what perfect devices of a channel read now."""
         if channel.source == 'robot':
-            names = (field.reading for field in channel.observed)
-            observed |= channel.observe(read(simulation, names))
-    return observed
-
-
-def _reader(reading: str, field: Field) -> Callable[[Simulation], Numbers]:
-    """Return what copies a field's part of the sensor array and converts it."""
-    convert = field.convert
-
-    def read_block(simulation: Simulation) -> Numbers:
-        block = simulation.data.sensordata[simulation.sensor_blocks[reading]]
-        return block.copy() if convert is None else convert(block)
-
-    return read_block
-
-
-_READERS = {reading: _reader(reading, field) for reading, field in _FIELDS.items()}
+            return read(self._measured.simulation, (each.reading for each in channel.fields))
+        return {'line_offset': np.array([self._measured.line_offset])}

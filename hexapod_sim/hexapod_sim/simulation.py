@@ -12,7 +12,8 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from hexapod_sim import robot, sensors
+from hexapod_sim import robot
+from hexapod_sim.sensor_table import MEASURED
 
 _MODEL_PATH = Path(__file__).with_name('hexapod.xml')
 _KEYFRAME = 'standing'
@@ -173,8 +174,9 @@ def _locate_blocks(model: mujoco.MjModel) -> dict[str, slice]:
         ValueError: The model does not list the sensors of a reading in a row.
     """
     blocks = {}
-    for reading, names in sensors.MODEL_SENSORS.items():
-        spans = [(int(s.adr[0]), int(s.adr[0] + s.dim[0])) for s in map(model.sensor, names)]
+    for reading, field in MEASURED.items():
+        found = map(model.sensor, field.sources)
+        spans = [(int(s.adr[0]), int(s.adr[0] + s.dim[0])) for s in found]
         if any(left[1] != right[0] for left, right in pairwise(spans)):
             raise ValueError(f'sensors of {reading!r}: expected them in a row in the model')
         blocks[reading] = slice(spans[0][0], spans[-1][1])

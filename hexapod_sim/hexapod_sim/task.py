@@ -12,6 +12,8 @@ from annotated_types import Interval
 
 from hexapod_sim import robot
 from hexapod_sim.article import section
+from hexapod_sim.quality import Qualities
+from hexapod_sim.sensors import Sensors
 from hexapod_sim.simulation import Simulation, SimulationDivergedError
 from hexapod_sim.sums import ordered_sum
 
@@ -197,14 +199,8 @@ def judge(
     cause = failure_cause(roll, pitch, height, offset, config)
     terminated = bool(cause)
     truncated = not terminated and step >= config.time_limit_steps
-    return Outcome(
-        step,
-        ordered_sum(terms.values()),
-        terms,
-        terminated,
-        truncated,
-        'time_limit' if truncated else cause,
-    )
+    cause = 'time_limit' if truncated else cause
+    return Outcome(step, ordered_sum(terms.values()), terms, terminated, truncated, cause)
 
 
 def diverged(step: int) -> Outcome:
@@ -221,11 +217,13 @@ class LineTask:
     Attributes:
         config: Weights, scales and limits.
         simulation: The robot.
+        sensors: What its devices deliver; what a period earned is judged by the truth.
     """
 
-    def __init__(self, config: TaskConfig) -> None:
+    def __init__(self, config: TaskConfig, qualities: Qualities | None = None) -> None:
         self.config = config
         self.simulation = Simulation()
+        self.sensors = Sensors(self, qualities)
         self._line_y = self.config.line_y
         self._step = 0
         self._x = 0.0
@@ -256,6 +254,7 @@ class LineTask:
         self._step = 0
         self._x = 0.0
         self._over = False
+        self.sensors.begin(seed)
         return Outcome(0, 0.0, dict.fromkeys(TERM_NAMES, 0.0), False, False, '')
 
     def advance(self, targets: np.ndarray) -> Outcome:
@@ -278,6 +277,7 @@ class LineTask:
         self._step += 1
         if self.config.line_period:
             self.line_y = line_at(self._step, self.config)
+        self.sensors.sample()
         return self._judge()
 
     def _judge(self) -> Outcome:
@@ -294,4 +294,5 @@ class LineTask:
         self.simulation.set_goal_line(self._line_y)
         self._step += 1
         self._over = True
+        self.sensors.sample()
         return diverged(self._step)

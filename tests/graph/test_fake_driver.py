@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Fake drivers in lock-step: a perfect one is not noticed, a bad one is and is repeatable."""
+"""Bad sensors on the graph: those of the specification, and drivers in place of the sim's."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from hexapod_interfaces.msg import EpisodeResult
 from hexapod_node.matching import subscribed_topics
 from hexapod_sim.nodes.fake_driver_node import FakeDriverNode
 from hexapod_sim.nodes.sim_node import SimNode
+from hexapod_sim.sensor_table import LETTERS
 from rclpy.parameter import Parameter
 
 pytestmark = pytest.mark.graph
@@ -41,10 +42,21 @@ def ros_args(request) -> list[str]:
     return ['--ros-args', *(word for t in topics for word in ('-r', f'agent:{t}:=driver/{t}'))]
 
 
-def returns(graph, tmp_path, *drivers: FakeDriverNode) -> list[float]:
+BAD = """
+sensors:
+  joint_states: {noise: 0.02, rate: 30.0}
+  line_offset: {bias: 0.1, dropout: 0.2}
+  imu_data: {noise: 0.05, bias: 0.1, delay: 0.06, dropout: 0.3, quantisation: 0.01, rate: 20.0}
+  body_height: {noise: 0.005}
+  foot_force: {noise: 1.0, dropout: 0.3}
+  foot_contacts: {noise: 0.1, delay: 0.025}
+"""
+
+
+def returns(graph, tmp_path, *drivers: FakeDriverNode, observations='C', config=SMALL):
     """Train two short episodes through the drivers; return what they earned."""
-    config = tmp_path / 'small.yaml'
-    config.write_text(SMALL)
+    file = tmp_path / 'small.yaml'
+    file.write_text(config)
     heard: list[EpisodeResult] = []
     node = graph.nodes[0]
     node.create_subscription(EpisodeResult, 'episode_result', heard.append, 10)
@@ -56,7 +68,9 @@ def returns(graph, tmp_path, *drivers: FakeDriverNode) -> list[float]:
                 set(wanted) <= set(subscribed_topics(node, made.get_name(), '/'))
             )
         )
-    goal = TrainRun.Goal(run_id='r', observations='C', seed=3, episodes=2, config=str(config))
+    goal = TrainRun.Goal(
+        run_id='r', observations=observations, seed=3, episodes=2, config=str(file)
+    )
     assert graph.train(goal).result.message == ''
     graph.until(lambda: len(heard) == 2)
     assert all((r.late, r.missing, r.duplicate) == (0, 0, 0) for r in heard)
@@ -64,13 +78,21 @@ def returns(graph, tmp_path, *drivers: FakeDriverNode) -> list[float]:
 
 
 @pytest.fixture
-def plain(tmp_path) -> list[float]:
+def plain() -> list[float]:
     """Return what the same run earns without drivers, and without ROS."""
-    path = tmp_path / 'plain.yaml'
-    path.write_text(SMALL)
-    config = RunSpec.load(str(path))
-    trainer, env = Trainer(config.observing('C'), 3), HexapodLine('C', config)
+    return alone(RunSpec.from_text(SMALL, 'a test').observing('C'))
+
+
+def alone(spec: RunSpec) -> list[float]:
+    trainer, env = Trainer(spec, 3), HexapodLine(config=spec)
     return [train_episode(env, trainer).episode_return for _ in range(2)]
+
+
+def test_bad_sensors_give_the_same_episodes_on_the_graph(graph, tmp_path) -> None:
+    spec = RunSpec.from_text(SMALL + BAD, 'a test').observing(LETTERS)
+    found = returns(graph, tmp_path, observations=LETTERS, config=SMALL + BAD)
+    assert found == alone(spec)
+    assert found != alone(RunSpec.from_text(SMALL, 'a test').observing(LETTERS))
 
 
 @pytest.fixture(scope='module')

@@ -25,7 +25,7 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Imu, JointState, Range
 from trajectory_msgs.msg import JointTrajectory
 
-from hexapod_sim import robot
+from hexapod_sim import robot, sensors
 
 pytestmark = pytest.mark.graph
 SEED = episode_seed(3, 0)
@@ -134,11 +134,11 @@ def test_time_goes_on_over_resets_and_the_state_starts_afresh(rig: Rig) -> None:
 def test_nothing_is_read_for_topics_that_nobody_hears(rig: Rig, monkeypatch) -> None:
     read = []
     monkeypatch.setattr(
-        'hexapod_sim.nodes.publishers.read', lambda simulation, keys: read.append(set(keys)) or {}
+        sensors, 'read', lambda simulation, keys: read.extend(keys) or {'height': np.ones(1)}
     )
-    rig.listen('line_offset', LineOffset)
+    rig.listen('body/height', Range)
     rig.reset()
-    assert read == [set()]
+    assert read == ['height']
 
 
 def test_a_reset_waits_for_its_listeners(rig: Rig) -> None:
@@ -193,6 +193,25 @@ def test_the_task_is_configured_by_parameters(rig: Rig) -> None:
     rig.play(to_nanoseconds(rig.reset().start))
     rig.wait(2)
     assert (outcome[1].truncated, outcome[1].cause) == (True, 'time_limit')
+
+
+@pytest.mark.parametrize(
+    ('text', 'complaint'),
+    [
+        ('{imu: {noise: 0.1}}', "unknown channel 'imu', expected one of joint_states"),
+        ('{imu_data: {noise: -1}}', 'sensors.imu_data.noise is -1'),
+        ('{imu_data: {hiss: 1}}', 'sensors.imu_data.hiss is 1: '),
+        ('{imu_data: 1}', 'expected {channel: {key: value}}'),
+        ('noise', 'expected {channel: {key: value}}'),
+        ('[', 'expected {channel: {key: value}}'),
+    ],
+)
+def test_qualities_that_do_not_fit_are_refused(rig: Rig, text: str, complaint: str) -> None:
+    given = Parameter('sensors.qualities', value=text).to_parameter_msg()
+    request = SetParametersAtomically.Request(parameters=[given])
+    answer = rig.graph.call(SetParametersAtomically, 'sim/set_parameters_atomically', request)
+    assert not answer.result.successful
+    assert complaint in answer.result.reason
 
 
 @pytest.mark.parametrize(

@@ -23,8 +23,8 @@ from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_cpg.locomotion import Motion
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_node.coroutines import start
-from hexapod_sim.driver_faults import DEVICES as ROWS
-from hexapod_sim.driver_faults import fault_names
+from hexapod_sim.fake_device import DEVICES as ROWS
+from hexapod_sim.fake_device import fault_names
 from hexapod_sim.nodes.fake_driver_node import FakeDriverNode
 from hexapod_sim.nodes.sim_node import SimNode
 from hexapod_sim.sensor_table import LETTERS
@@ -54,7 +54,7 @@ DEVICES = {
     'joint_states': Device(
         'servos/state',
         {'joint_order': 'shuffled', 'joint_prefix': 'px/', 'extra_joints': 2, 'noise': 0.002,
-         'velocity_noise': 0.05, 'quantisation': 0.005},
+         'quantisation': 0.005},
     ),
     'line_offset': Device('camera/line', {'noise': 0.005, 'delay': 0.05}, 'camera'),
     'joint_torques': Device(
@@ -278,7 +278,7 @@ def test_the_robot_walks_with_drivers_of_every_channel_and_stops_when_one_breaks
 @pytest.mark.slow
 @pytest.mark.parametrize('channel', DEVICES)
 def test_every_fault_of_every_driver_is_named_and_stops_the_robot(walking, channel: str) -> None:
-    for fault in fault_names(channel):
+    for fault in fault_names(ROWS[channel]):
         assert_named_and_stopped(walking, channel, fault)
     assert walking.check().passed
 

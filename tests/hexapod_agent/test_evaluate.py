@@ -83,6 +83,15 @@ def test_command_line_plays_no_baseline_on_the_graph(capsys):
     assert '--graph: expected a CHECKPOINT' in capsys.readouterr().err
 
 
+def test_figures_are_not_measured_by_bad_sensors(make_trainer, small_config, tmp_path, capsys):
+    config = small_config.with_value('sensors.line_offset.noise', 0.01, 'a test')
+    trainer = make_trainer(config=config)
+    checkpoint.save(tmp_path / 'a.pt', trainer, to_resume=False)
+    with pytest.raises(SystemExit):
+        evaluate.main([str(tmp_path / 'a.pt'), '--graph'])
+    assert 'measured by the topics of line_offset, whose errors' in capsys.readouterr().err
+
+
 def test_evaluating_in_the_environment_needs_no_ros():
     code = 'import sys, hexapod_agent.evaluate; assert "rclpy" not in sys.modules'
     subprocess.run([sys.executable, '-c', code], check=True)

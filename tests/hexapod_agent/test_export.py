@@ -13,7 +13,6 @@ from hexapod_agent.deployment.policies import trained_policy
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.learning import checkpoint
 from hexapod_sim.sensor_table import CHANNELS, LETTERS, PREVIOUS_ACTION
-from hexapod_sim.sensors import observe
 
 from hexapod_agent import export
 
@@ -82,7 +81,7 @@ def test_it_drives_the_robot_from_raw_readings(trainer, session):
     observation, _ = env.reset(seed=3)
     action = np.zeros(30, np.float32)
     for _ in range(20):
-        raw = observe(env.task.simulation, trainer.spec.channels) | {
+        raw = env.task.sensors.observe(trainer.spec.channels) | {
             'oscillator': np.concatenate((env.cpg.x, env.cpg.y)),
             'line_offset': np.array([env.task.line_offset]),
             PREVIOUS_ACTION: action.astype(np.float64),

@@ -11,9 +11,15 @@ from hexapod_agent.specification.run_spec import CpgConfig, RunSpec
 from hexapod_cpg.mapping import ActionRanges
 from hexapod_cpg.oscillator import HopfConfig
 from hexapod_sim.article import section
+from hexapod_sim.quality import PERFECT, Quality
 from hexapod_sim.task import TaskConfig
 
-SECTIONS = {TaskConfig: ('task',), HopfConfig: ('cpg', 'hopf'), ActionRanges: ('cpg', 'ranges')}
+SECTIONS = {
+    TaskConfig: ('task',),
+    HopfConfig: ('cpg', 'hopf'),
+    ActionRanges: ('cpg', 'ranges'),
+    Quality: ('sensors', 'each'),
+}
 
 
 def sections(kind: type) -> list[type]:
@@ -22,7 +28,7 @@ def sections(kind: type) -> list[type]:
     return [kind, *(each for part in inner for each in sections(part))]
 
 
-@pytest.mark.parametrize('kind', sections(RunSpec), ids=lambda kind: kind.__name__)
+@pytest.mark.parametrize('kind', [*sections(RunSpec), Quality], ids=lambda kind: kind.__name__)
 def test_no_field_has_a_second_default(kind) -> None:
     for field in dataclasses.fields(kind):
         assert field.default is dataclasses.MISSING, field.name
@@ -48,6 +54,7 @@ def test_the_agent_has_what_the_packages_below_it_read() -> None:
     assert config.task == TaskConfig.of_article()
     assert config.cpg.hopf == HopfConfig.of_article()
     assert config.cpg.ranges == ActionRanges.of_article()
+    assert set(config.sensors.values()) == {PERFECT}
 
 
 def test_changes_leave_the_article_alone() -> None:

@@ -3,11 +3,17 @@
 
 """Sensor channels: sizes, units, frames and signs, against mechanics and MuJoCo's own state."""
 
+import copy
+import pickle
+from dataclasses import replace
+
 import mujoco
 import numpy as np
 import pytest
-from hexapod_sim.sensor_table import CHANNELS, foot_forces
+from hexapod_sim.quality import PERFECT, Quality
+from hexapod_sim.sensor_table import CHANNELS, MEASURED, SENSORS, foot_forces
 from hexapod_sim.simulation import Simulation, _locate_blocks
+from hexapod_sim.task import LineTask, TaskConfig
 
 from hexapod_sim import robot, sensors
 
@@ -60,7 +66,7 @@ def place(
 
 def test_channels_have_their_sizes_and_are_copies(standing: Simulation) -> None:
     readings = sensors.read(standing, SIZES)
-    assert set(SIZES) == set(sensors.READINGS)
+    assert set(SIZES) == set(MEASURED)
     for channel, reading in readings.items():
         assert reading.shape == SIZES[channel], channel
         assert reading.dtype == np.float64
@@ -257,10 +263,12 @@ def test_foot_forces_of_hand_made_wrenches() -> None:
     np.testing.assert_array_equal(foot_forces(wrench), expected)
 
 
-def test_foot_forces_are_made_of_the_wrench(standing: Simulation) -> None:
-    standing.advance(NEUTRAL + 0.05)
-    wrench = read(standing, 'foot_wrench')
-    observed = sensors.observe(standing, CHANNELS)
+def test_foot_forces_are_made_of_the_wrench() -> None:
+    task = LineTask(TaskConfig.of_article())
+    task.reset(1)
+    task.advance(NEUTRAL + 0.05)
+    wrench = read(task.simulation, 'foot_wrench')
+    observed = task.sensors.observe(CHANNELS)
     np.testing.assert_array_equal(foot_forces(wrench), observed['foot_forces'])
 
 
@@ -272,3 +280,64 @@ def test_contacts_name_the_feet_on_the_floor(standing: Simulation) -> None:
     place(standing, joints=lifted)
     np.testing.assert_array_equal(read(standing, 'foot_contacts'), [1, 0, 1, 0, 1, 1])
     np.testing.assert_array_equal(read(standing, 'foot_wrench')[[1, 3]], 0)
+
+
+BAD = Quality(noise=0.05, bias=0.1, delay=0.06, dropout=0.3, quantisation=0.01, rate=20.0)
+SWITCHES = replace(PERFECT, noise=0.1, dropout=0.2)
+
+
+def walk(qualities, steps: int = 30, seed: int = 3):
+    """Return outcomes and observations of a robot that moves its legs at random."""
+    task, rng = LineTask(TaskConfig.of_article(), qualities), np.random.default_rng(1)
+    outcomes, seen = [task.reset(seed)], [task.sensors.observe(CHANNELS)]
+    for _ in range(steps):
+        outcomes.append(task.advance(NEUTRAL + rng.uniform(-0.1, 0.1, 18)))
+        seen.append(task.sensors.observe(CHANNELS))
+    return outcomes, seen
+
+
+def test_bad_sensors_are_read_and_the_truth_is_judged() -> None:
+    bad = dict.fromkeys(SENSORS, BAD) | {'foot_contacts': SWITCHES}
+    outcomes, seen = walk(bad)
+    expected, truth = walk({})
+    assert outcomes == expected
+    for reading in truth[0]:
+        assert any((a[reading] != b[reading]).any() for a, b in zip(seen, truth, strict=True))
+
+
+def test_the_errors_of_a_sensor_are_its_own() -> None:
+    """However good the others are, and from episode to episode they differ."""
+    one, all_bad, again = (
+        walk({'imu_data': BAD})[1],
+        walk(dict.fromkeys(SENSORS, BAD) | {'foot_contacts': SWITCHES})[1],
+        walk({'imu_data': BAD}, seed=4)[1],
+    )
+    for ours, theirs in zip(one, all_bad, strict=True):
+        np.testing.assert_array_equal(ours['orientation'], theirs['orientation'])
+    assert (one[0]['orientation'] != again[0]['orientation']).any()
+
+
+def test_one_load_cell_of_six_loses_a_sample() -> None:
+    _, seen = walk({'foot_force': replace(PERFECT, dropout=0.5)})
+    _, truth = walk({})
+    late = np.array(
+        [
+            (ours['foot_forces'] != theirs['foot_forces'])[:6]
+            for ours, theirs in zip(seen, truth, strict=True)
+        ]
+    )
+    assert (late.any(axis=1) & ~late.all(axis=1)).any()
+
+
+def test_a_copy_of_a_task_goes_on_with_its_errors() -> None:
+    task = LineTask(TaskConfig.of_article(), {'imu_data': BAD})
+    task.reset(3)
+    for _ in range(5):
+        task.advance(NEUTRAL)
+    for twin in (copy.deepcopy(task), pickle.loads(pickle.dumps(task))):
+        mine = copy.deepcopy(task)
+        for _ in range(10):
+            mine.advance(NEUTRAL)
+            twin.advance(NEUTRAL)
+            ours, theirs = (each.sensors.observe(CHANNELS)['orientation'] for each in (mine, twin))
+            np.testing.assert_array_equal(ours, theirs)

@@ -10,7 +10,8 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
-from hexapod_sim.sensors import READINGS, read
+from hexapod_sim.sensor_table import MEASURED
+from hexapod_sim.sensors import read
 from hexapod_sim.sums import ordered_sum
 from hexapod_sim.task import (
     TERM_NAMES,
@@ -344,7 +345,7 @@ def test_divergence_terminates_with_readings_that_can_be_used(
     assert (outcome.terminated, outcome.cause, outcome.reward) == (True, 'diverged', 0.0)
     assert sum(outcome.terms.values()) == 0.0
     assert task.line_offset == offset
-    for channel, value in read(task.simulation, READINGS).items():
+    for channel, value in read(task.simulation, MEASURED).items():
         assert np.isfinite(value).all(), channel
 
 

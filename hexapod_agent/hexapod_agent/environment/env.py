@@ -13,7 +13,6 @@ from hexapod_cpg.mapping import ACTION_SIZE, command_from_action
 from hexapod_sim.film import Frame
 from hexapod_sim.picture import Picture
 from hexapod_sim.robot import CONTROL_PERIOD_NS, NEUTRAL_POSE, SUBSTEPS
-from hexapod_sim.sensors import observe
 from hexapod_sim.task import LineTask, Outcome, episode_seed
 from hexapod_sim.viewer import has_display
 from numpy.typing import NDArray
@@ -45,9 +44,8 @@ def read_observation(
     Raises:
         ObservationError: A reading is not finite.
     """
-    readings = observe(task.simulation, spec.channels)
+    readings = task.sensors.observe(spec.channels)
     readings['oscillator'] = np.concatenate((x, y))
-    readings['line_offset'] = np.array([task.line_offset])
     return spec.assemble(readings, previous_action)
 
 
@@ -135,7 +133,7 @@ class HexapodLine(gymnasium.Env[Observation, NDArray[np.float32]]):
         spec = config if isinstance(config, RunSpec) else RunSpec.load(config)
         self.config = spec if observations is None else spec.observing(observations)
         self.observation_spec = self.config.observed
-        self.task = LineTask(self.config.task)
+        self.task = LineTask(self.config.task, self.config.sensors)
         self.cpg = Cpg(self.config.cpg.hopf)
         self.observation_space = gymnasium.spaces.Box(
             -1.0, 1.0, (self.observation_spec.size,), np.float32

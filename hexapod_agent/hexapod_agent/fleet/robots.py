@@ -24,7 +24,7 @@ class Robots:
     def __init__(self, config: RunSpec, places: int) -> None:
         self._config = config.cpg
         # A model of its own for each: advancing switches the model's sensors off and on.
-        self._tasks = [LineTask(config.task) for _ in range(places)]
+        self._tasks = [LineTask(config.task, config.sensors) for _ in range(places)]
         self._cpg = Cpg(config.cpg.hopf, (places,))
         self._targets = np.zeros(0)
         self.actions = np.zeros((places, ACTION_SIZE), np.float32)

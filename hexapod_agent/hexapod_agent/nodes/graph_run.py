@@ -31,6 +31,7 @@ from hexapod_agent.learning.training import Trainer
 from hexapod_agent.nodes.control_loop import OUTCOME, ControlLoop
 from hexapod_agent.nodes.peers import PeerError, Peers
 from hexapod_agent.specification.run_spec import RunSpec
+from hexapod_sim import quality
 
 if TYPE_CHECKING:
     from hexapod_node.intra_process import LockStepPublisher
@@ -105,6 +106,8 @@ class GraphRun:
         """Run every episode of the goal, then close the bag and save an agent that has learned."""
         peers, goal = self._context.peers, self._goal
         await peers.configure('sim', 'task', asdict(self._config.task))
+        qualities = {'qualities': quality.to_text(self._config.sensors)}
+        await peers.configure('sim', 'sensors', qualities)
         await peers.configure('cpg', 'cpg', asdict(self._config.cpg.hopf))
         first = await self._open_bag() if goal.bag else 0
         for self._episode in range(first, goal.episodes):

@@ -17,11 +17,14 @@ from hexapod_cpg.mapping import ActionRanges
 from hexapod_cpg.oscillator import HopfConfig
 from hexapod_sim.article import ARTICLE, article
 from hexapod_sim.command_line import CommandLine, file
-from hexapod_sim.sensor_table import LETTERS
+from hexapod_sim.quality import Quality
+from hexapod_sim.quality import check as check_qualities
+from hexapod_sim.sensor_table import LETTERS, SENSORS
 from hexapod_sim.task import TaskConfig
 from pydantic import TypeAdapter, ValidationError
 
 from hexapod_agent.algorithms.hyperparameters import LearnerConfig, TrainingConfig
+from hexapod_agent.specification.nested import flat, merged
 from hexapod_agent.specification.observation import ObservationSpec, parse_observations
 
 
@@ -50,6 +53,7 @@ class RunSpec:
 
     Attributes:
         observations: Whether the agent observes a channel, by its letter in the sensor table.
+        sensors: How good a channel's device is, by its key in the sensor table.
         task: Reward, starts and limits.
         cpg: The pattern generator.
         learner: Algorithm and hyper-parameters.
@@ -57,6 +61,7 @@ class RunSpec:
     """
 
     observations: Mapping[str, bool]
+    sensors: Mapping[str, Quality]
     task: TaskConfig
     cpg: CpgConfig
     learner: LearnerConfig
@@ -99,7 +104,7 @@ class RunSpec:
         Raises:
             ConfigError: A section or key is unknown, or a value is not what it expects.
         """
-        return _build(article(), changes, source)
+        return _build(_base(), changes, source)
 
     @classmethod
     def from_text(cls, text: str, source: str) -> 'RunSpec':
@@ -186,6 +191,14 @@ class RunSpec:
 _OF_THE_LEARNER = ('actor', 'critic', 'ddpg', 'noise')
 
 
+def _base() -> dict[str, Any]:
+    """Return the values of article.yaml, what it says of each channel spread over them all."""
+    values = dict(article())
+    values['observations'] = dict.fromkeys(LETTERS, values['observations']['each'])
+    values['sensors'] = dict.fromkeys(SENSORS, values['sensors']['each'])
+    return values
+
+
 def _build(base: Mapping[str, Any], changes: Any, source: str) -> RunSpec:
     """Validate a base with changes.
 
@@ -200,7 +213,7 @@ def _build(base: Mapping[str, Any], changes: Any, source: str) -> RunSpec:
         changes['observations'] = {letter: letter in chosen for letter in LETTERS}
     _check_keys(base, changes, source, '')
     try:
-        spec: RunSpec = TypeAdapter(RunSpec).validate_python(_merged(base, changes))
+        spec: RunSpec = TypeAdapter(RunSpec).validate_python(merged(base, changes))
     except ValidationError as error:
         first = error.errors()[0]
         key = '.'.join(str(part) for part in first['loc'])
@@ -209,6 +222,7 @@ def _build(base: Mapping[str, Any], changes: Any, source: str) -> RunSpec:
         ) from error
     try:
         _ = spec.learner.ddpg.group_size
+        check_qualities(spec.sensors)
     except ValueError as error:
         raise ConfigError(f'{source}: {error}') from error
     return spec
@@ -220,7 +234,7 @@ def _modern(changes: Mapping[str, Any]) -> dict[str, Any]:
     if not moved:
         return dict(changes)
     kept = {name: value for name, value in changes.items() if name not in moved}
-    return _merged(kept, {'learner': moved})
+    return merged(kept, {'learner': moved})
 
 
 def _changes(path: str | Path) -> Any:
@@ -279,21 +293,3 @@ def add_spec_options(parser: CommandLine) -> None:
         metavar='KEY=VALUE',
         help='one further change, such as learner.actor.learning_rate=2e-4; may be repeated',
     )
-
-
-def flat(mapping: Mapping[str, Any], prefix: str = '') -> dict[str, Any]:
-    """Return nested values by their dotted keys."""
-    values: dict[str, Any] = {}
-    for key, value in mapping.items():
-        nested = flat(value, f'{prefix}{key}.') if isinstance(value, Mapping) else None
-        values |= nested if nested is not None else {f'{prefix}{key}': value}
-    return values
-
-
-def _merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return `base` with the values of `changes`, section by section."""
-    merged = dict(base)
-    for key, value in changes.items():
-        nested = isinstance(value, Mapping) and isinstance(merged.get(key), Mapping)
-        merged[key] = _merged(merged[key], value) if nested else value
-    return merged

@@ -12,9 +12,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.bags.run_record import read_topic
 from hexapod_doe.errors import BagError
 from hexapod_doe.replays.episodes import LINE_OFFSET, ODOMETRY
+from hexapod_doe.replays.rescoring import recorded_config
 
 BAND = 0.1
 """Distance from the line within which the robot has settled [m]."""
@@ -70,8 +72,14 @@ def read_track(bag: str | Path) -> Track:
     """Read a run's one recorded episode.
 
     Raises:
-        BagError: the bag cannot be read, or its topics odom and line_offset do not agree in time.
+        BagError: the bag cannot be read, its topics odom and line_offset do not agree in time, or
+            the latter has errors.
     """
+    if not recorded_config(BagFile(bag)).sensors['line_offset'].perfect:
+        raise BagError(
+            f'bag {bag}: line_offset has the errors of its sensors.line_offset, expected a '
+            'perfect one to find the line by'
+        )
     positions = {time: m.pose.pose.position for time, m in read_topic(bag, 'odom', ODOMETRY)}
     offsets = {time: m.offset for time, m in read_topic(bag, 'line_offset', LINE_OFFSET)}
     if not positions or positions.keys() != offsets.keys():

@@ -76,7 +76,7 @@ class Rescored:
 
 
 def recorded_config(bag: BagFile) -> RunSpec:
-    """Return a configuration with the task that a run was made with, if the bag tells.
+    """Return a specification with task and sensors of a run, if the bag tells.
 
     The rest is article.yaml's: an old bag's learner may know keys that this version does not.
 
@@ -85,20 +85,22 @@ def recorded_config(bag: BagFile) -> RunSpec:
     """
     metadata = bag.metadata()
     config = yaml.safe_load(metadata.get('spec', metadata.get('config', ''))) or {}
-    return RunSpec.from_mapping({'task': config.get('task', {})}, f'bag {bag.path}')
+    told = {name: config[name] for name in ('task', 'sensors') if name in config}
+    return RunSpec.from_mapping(told, f'bag {bag.path}')
 
 
 def rescore(bag: BagFile, task: TaskConfig) -> Iterator[Rescored]:
     """Score each episode of which the bag holds `odom`.
 
     The distance from the line is that of `line_offset`; a task that moves the line differently
-    shifts it by as much. A bag without this topic has its line where the task puts it.
+    shifts it by as much. A bag without this topic, or with errors in it, has its line where the
+    task puts it.
 
     Raises:
         BagError: the bag has no odometry, or a sample of a topic is missing.
     """
-    topics = _Topics(bag)
-    before = recorded_config(bag).task
+    spec = recorded_config(bag)
+    topics, before = _Topics(bag, spec.sensors['line_offset'].perfect), spec.task
     for span in recorded_episodes(bag, topics.odom):
         yield _rescore_episode(topics.samples(span), span, before, task)
 
@@ -115,10 +117,11 @@ class _Sample:
 class _Topics:
     """The topics that a score is made of."""
 
-    def __init__(self, bag: BagFile) -> None:
+    def __init__(self, bag: BagFile, is_line_true: bool) -> None:
         self._bag = bag
         self.odom = Series(bag, 'odom', ODOMETRY)
-        self._others = [series_of_type(bag, kind) for kind in (LINE_OFFSET, STEP_OUTCOME)]
+        line = series_of_type(bag, LINE_OFFSET) if is_line_true else None
+        self._others = line, series_of_type(bag, STEP_OUTCOME)
 
     def samples(self, span: Span) -> list[_Sample]:
         """Return the samples of an episode.

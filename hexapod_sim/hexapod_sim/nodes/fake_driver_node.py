@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -14,7 +14,7 @@ from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticStatus
 from hexapod_node.diagnostics import Diagnostics, Health
 from hexapod_node.node import Node
-from hexapod_node.parameters import Parameter, declare
+from hexapod_node.parameters import Parameter, config_table, declare
 from hexapod_node.qos import DRIVER, LOCK_STEP
 from hexapod_node.raw_topics import message_class
 from hexapod_node.spin import run
@@ -26,11 +26,18 @@ from rclpy.parameter import Parameter as RclpyParameter
 from rclpy.publisher import Publisher
 from rclpy.serialization import serialize_message
 
-from hexapod_sim.driver_faults import ALL_FAULTS, DEVICES, STALE_STAMPS, STOPPED
-from hexapod_sim.fake_device import OUR_ORDER, REVERSED, SHUFFLED, FakeDevice
-from hexapod_sim.sample_line import SampleLine, Timing
+from hexapod_sim.fake_device import (
+    ALL_FAULTS,
+    DEVICES,
+    OUR_ORDER,
+    REVERSED,
+    SHUFFLED,
+    STALE_STAMPS,
+    STOPPED,
+    FakeDevice,
+)
+from hexapod_sim.quality import PERFECT
 
-_UNIT = 'SI unit of the channel'
 _FLUSH_PERIOD_S = 0.005
 
 PARAMETERS = (
@@ -45,39 +52,10 @@ PARAMETERS = (
         choices=(LOCKSTEP, REALTIME),
     ),
     Parameter('seed', 1, 'seed of all that is random', range=(0, 2**63 - 1)),
-    Parameter(
-        'noise',
-        0.0,
-        'standard deviation of each sample; orientation: rad; contacts: chance to be wrong',
-        unit=_UNIT,
-        range=(0.0, 1e3),
+    *(
+        replace(entry, name=entry.name.removeprefix('quality.'), read_only=True)
+        for entry in config_table(PERFECT, 'quality')
     ),
-    Parameter(
-        'bias',
-        0.0,
-        'standard deviation of the constant error of each number',
-        unit=_UNIT,
-        range=(0.0, 1e3),
-    ),
-    Parameter(
-        'quantisation', 0.0, 'step of the values; 0 for none', unit=_UNIT, range=(0.0, 1e3)
-    ),
-    Parameter(
-        'velocity_noise', 0.0, 'noise of the joint velocities', unit='rad/s', range=(0.0, 1e3)
-    ),
-    Parameter(
-        'velocity_bias', 0.0, 'bias of the joint velocities', unit='rad/s', range=(0.0, 1e3)
-    ),
-    Parameter(
-        'velocity_quantisation',
-        0.0,
-        'step of the joint velocities; 0 for none',
-        unit='rad/s',
-        range=(0.0, 1e3),
-    ),
-    Parameter('delay', 0.0, 'from measurement to delivery', unit='s', range=(0.0, 10.0)),
-    Parameter('dropout', 0.0, 'chance of a sample to be lost', range=(0.0, 0.999)),
-    Parameter('rate', 0.0, "samples per second; 0 for the sim's", unit='Hz', range=(0.0, 1e3)),
     Parameter(
         'joint_order',
         OUR_ORDER,
@@ -104,10 +82,9 @@ class _Outlet:
     topic: str
     """Of the sim."""
     publisher: Publisher
-    line: SampleLine[Any]
     stale: Time | None = None
     """The stamp that stands still."""
-    unmatched: bytes = b''
+    unheard: bytes = b''
     """The newest message that had no subscription to go to."""
 
 
@@ -120,67 +97,60 @@ class FakeDriverNode(Node):
         """Subscribe to the sim's topics of the channel.
 
         Args:
-            name: of the node.
-            parameter_overrides: values that stand in for the command line's.
+            name: Of the node.
+            parameter_overrides: Values that stand in for the command line's.
 
         Raises:
-            ValueError: a parameter does not suit the channel.
+            ValueError: A parameter does not suit the channel.
         """
         super().__init__(name, parameter_overrides=list(parameter_overrides))
         declare(self, PARAMETERS)
         value: dict[str, Any] = {p.name: self.get_parameter(p.name).value for p in PARAMETERS}
         self._device = FakeDevice(value)
         self._received = self._published = 0
-        lock_step = value['sync'] == LOCKSTEP
-        qos = LOCK_STEP if lock_step else DRIVER
-        timing = Timing(value['delay'], value['dropout'], value['rate'], hold=lock_step)
+        self._lock_step = value['sync'] == LOCKSTEP
+        qos = LOCK_STEP if self._lock_step else DRIVER
         self._outlets = []
-        kind = message_class(DEVICES[self._device.channel].message_type)
-        for index, topic in enumerate(self._device.topics):
-            own = self._device.own_topic(topic)
-            publisher = self.create_publisher(kind, own, qos)
-            # A device of six cells loses a sample of one of them, not of all.
-            outlet = _Outlet(topic, publisher, SampleLine(timing, value['seed'] + index))
+        kind = message_class(self._device.row.message_type)
+        for topic in self._device.row.topics:
+            publisher = self.create_publisher(kind, self._device.own_topic(topic), qos)
+            outlet = _Outlet(topic, publisher)
             self.create_subscription(kind, topic, partial(self._on_sample, outlet), qos)
             self._outlets.append(outlet)
         self.add_on_set_parameters_callback(self._on_set)
-        if lock_step:
+        if self._lock_step:
             call_every(self, _FLUSH_PERIOD_S, self._flush)
-        Diagnostics(self, self._health, hardware=f'fake {self._device.channel}')
+        Diagnostics(self, self._health, hardware=f'fake {value["channel"]}')
 
     @property
     def _fault(self) -> str:
         return str(self.get_parameter('fault').value)
 
     def _on_sample(self, outlet: _Outlet, message: Any) -> None:
-        """Take a sample of the sim, and publish what the device delivers by then."""
+        """Take a sample of the sim, and publish what the device has delivered by then."""
         self._received += 1
         stamp_ns = to_nanoseconds(message.header.stamp)
-        self._device.degrade(message, outlet.topic, stamp_ns, self._fault)
-        for delivered_ns, delivered in outlet.line.offer(stamp_ns, message):
-            self._publish(outlet, delivered_ns, delivered)
-
-    def _publish(self, outlet: _Outlet, stamp_ns: int, message: Any) -> None:
+        arrived = self._device.measure(message, outlet.topic, stamp_ns)
         fault = self._fault
-        if fault == STOPPED:
+        if fault == STOPPED or not (arrived or self._lock_step):
             return
-        message.header.stamp = time_message(stamp_ns)
-        if fault == STALE_STAMPS:
-            outlet.stale = message.header.stamp = outlet.stale or message.header.stamp
-        else:
-            outlet.stale = None
+        self._device.fill(message, outlet.topic, fault)
+        if not self._lock_step:
+            message.header.stamp = time_message(self._device.lines[outlet.topic].stamp_ns)
+        outlet.stale = (outlet.stale or message.header.stamp) if fault == STALE_STAMPS else None
+        message.header.stamp = outlet.stale or message.header.stamp
         self._published += 1
-        if outlet.line.holds and not outlet.publisher.get_subscription_count():
-            outlet.unmatched = serialize_message(message)
+        if self._lock_step and not outlet.publisher.get_subscription_count():
+            outlet.unheard = serialize_message(message)
         else:
             outlet.publisher.publish(message)
 
     def _flush(self) -> None:
         """Publish what nobody was there to hear: in lock-step no sample may be lost."""
         for outlet in self._outlets:
-            if outlet.unmatched and outlet.publisher.get_subscription_count():
-                outlet.publisher.publish(outlet.unmatched)
-                outlet.unmatched = b''
+            if outlet.unheard and outlet.publisher.get_subscription_count():
+                outlet.publisher.publish(outlet.unheard)
+                outlet.unheard = b''
 
     def _on_set(self, parameters: list[RclpyParameter]) -> SetParametersResult:
         """Refuse a fault that the channel cannot have."""
@@ -196,7 +166,7 @@ class FakeDriverNode(Node):
         counts = {
             'received': self._received,
             'published': self._published,
-            'lost': sum(outlet.line.lost for outlet in self._outlets),
+            'lost': sum(line.lost for line in self._device.lines.values()),
         }
         if fault := self._fault:
             return DiagnosticStatus.WARN, f'fault: {fault}', counts

@@ -40,11 +40,6 @@ class SensorTopic:
         """Relative name of the topic."""
         return self.channel.topics[self.index]
 
-    @property
-    def readings(self) -> tuple[str, ...]:
-        """What its messages carry."""
-        return tuple(field.reading for field in self.channel.fields)
-
     def new(self) -> Any:
         """Return a message with everything that never changes."""
         message = self.message_type(**self.channel.constants)
@@ -66,7 +61,7 @@ class SensorTopic:
 SENSOR_TOPICS: tuple[SensorTopic, ...] = tuple(
     SensorTopic(channel, index, message_class(channel.message_type))
     for channel in CHANNELS
-    if channel.source == 'robot'
+    if channel.is_measured
     for index in range(len(channel.topics))
 )
 

@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What the sim publishes of a task: sensors, the line, the outcome, the truth and the clock."""
+"""What the sim publishes of a task: sensors, the outcome, the truth and the clock."""
 
 from __future__ import annotations
 
@@ -9,15 +9,13 @@ from array import array
 from typing import TYPE_CHECKING
 
 from builtin_interfaces.msg import Time
-from hexapod_interfaces.msg import LineOffset, StepOutcome
+from hexapod_interfaces.msg import StepOutcome
 from hexapod_node.intra_process import LockStepPublisher
 from hexapod_node.stamps import time_message
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 
 from hexapod_sim.nodes.messages import SENSOR_TOPICS, fill_odometry, new_odometry
-from hexapod_sim.robot import ODOM_FRAME
-from hexapod_sim.sensors import read
 from hexapod_sim.task import LineTask, Outcome
 
 if TYPE_CHECKING:
@@ -40,9 +38,6 @@ class SimPublishers:
             )
             for sensor in SENSOR_TOPICS
         ]
-        self._line_offset = LineOffset()
-        self._line_offset.header.frame_id = ODOM_FRAME
-        self._line_offset_publisher = LockStepPublisher(node, LineOffset, 'line_offset')
         self._outcome = StepOutcome()
         self._outcome_publisher = LockStepPublisher(node, StepOutcome, 'step_outcome')
         self._odometry = new_odometry()
@@ -51,7 +46,6 @@ class SimPublishers:
         self._clock_publisher = LockStepPublisher(node, Clock, 'clock')
         self.all: list[LockStepPublisher] = [
             *(publisher for _, _, publisher in self._sensors),
-            self._line_offset_publisher,
             self._outcome_publisher,
             self._odometry_publisher,
             self._clock_publisher,
@@ -62,16 +56,12 @@ class SimPublishers:
         stamp = time_message(now_ns)
         routes = [(*entry, publisher.route()) for *entry, publisher in self._sensors]
         heard = [(sensor, message, publish) for sensor, message, publish in routes if publish]
-        needed = {key for sensor, _, _ in heard for key in sensor.readings}
-        readings = read(self._task.simulation, needed)
+        channels = {sensor.channel.key: sensor.channel for sensor, _, _ in heard}
+        readings = {key: self._task.sensors.read(row) for key, row in channels.items()}
         for sensor, message, publish in heard:
             message.header.stamp = stamp
-            sensor.fill(message, readings)
+            sensor.fill(message, readings[sensor.channel.key])
             publish(message)
-        if publish := self._line_offset_publisher.route():
-            self._line_offset.header.stamp = stamp
-            self._line_offset.offset = self._task.line_offset
-            publish(self._line_offset)
         if publish := self._odometry_publisher.route():
             fill_odometry(self._odometry, self._task.simulation)
             self._odometry.header.stamp = stamp

@@ -20,14 +20,20 @@ from hexapod_node.spin import run
 from hexapod_node.stamp_gate import DuePeriod
 from hexapod_node.stamps import requested_start_ns, time_message, to_nanoseconds
 from hexapod_node.sync import REALTIME, SYNC, max_age, phase
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.parameter import Parameter as RclpyParameter
 from trajectory_msgs.msg import JointTrajectory
 
+from hexapod_sim import quality
 from hexapod_sim.nodes.messages import targets_from_message
 from hexapod_sim.nodes.publishers import SimPublishers
 from hexapod_sim.nodes.real_time import RealTime
+from hexapod_sim.quality import Quality
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from hexapod_sim.task import LineTask, Outcome, TaskConfig
 from hexapod_sim.viewer import Viewer
+
+_QUALITIES = 'sensors.qualities'
 
 PARAMETERS = (
     SYNC,
@@ -41,6 +47,13 @@ PARAMETERS = (
     phase(0.0),
     max_age('max_age', 'a trajectory'),
     Parameter('seed', 1, 'realtime: seed of the start', range=(0, 2**63 - 1)),
+    Parameter(
+        _QUALITIES,
+        '{}',
+        "how good the devices are, as YAML of the specification's section sensors; a channel that "
+        'is not named is perfect',
+        read_only=False,
+    ),
     Parameter('viewer', False, 'show the robot in a window, in real time; needs a display'),
 )
 
@@ -55,7 +68,8 @@ class SimNode(Node):
         super().__init__('sim')
         declare(self, PARAMETERS)
         self._config = ConfigParameters(self, TaskConfig.of_article(), 'task')
-        self._task = LineTask(self._config.get())
+        self._task = LineTask(self._config.get(), self._qualities())
+        self.add_on_set_parameters_callback(self._on_set)
         value = {entry.name: self.get_parameter(entry.name).value for entry in PARAMETERS}
         paced = value['sync'] != REALTIME
         self._viewer = Viewer(self._task.simulation, paced) if value['viewer'] else None
@@ -87,6 +101,8 @@ class SimNode(Node):
         listeners = listeners_of(request.topics, request.subscriptions)
         response.message = unmatched(self._topics.all, listeners)
         response.success = not response.message
+        if response.success:
+            self._task.sensors.qualities = self._qualities()
         if response.success and self._real_time is not None:
             response.start = time_message(self._real_time.reset(request.seed, self._config.get()))
             return response
@@ -98,6 +114,19 @@ class SimNode(Node):
             self._publish(outcome, self._now_ns)
         response.start = time_message(self._now_ns)
         return response
+
+    def _qualities(self) -> dict[str, Quality]:
+        return quality.from_text(self.get_parameter(_QUALITIES).value)
+
+    def _on_set(self, parameters: list[RclpyParameter]) -> SetParametersResult:
+        """Refuse what no device can be."""
+        try:
+            for parameter in parameters:
+                if parameter.name == _QUALITIES:
+                    quality.from_text(parameter.value)
+        except ValueError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
 
     def _on_joint_trajectory(self, message: JointTrajectory) -> None:
         """Advance one period, if the trajectory is the one of the period that is due."""

@@ -14,8 +14,7 @@ from hexapod_agent.contract.watch import MessageWatch
 from hexapod_sim.nodes.messages import SENSOR_TOPICS
 from hexapod_sim.robot import GRAVITY, JOINTS
 from hexapod_sim.sensor_table import CHANNELS
-from hexapod_sim.sensors import read
-from hexapod_sim.simulation import Simulation
+from hexapod_sim.task import LineTask, TaskConfig
 from sensor_msgs.msg import Imu, JointState
 
 TABLE = {topic: channel for channel in CHANNELS for topic in channel.topics}
@@ -35,10 +34,10 @@ def watch(topic: str) -> MessageWatch:
 
 @pytest.mark.parametrize('sensor', SENSOR_TOPICS, ids=lambda sensor: sensor.name)
 def test_what_the_sim_publishes_passes(sensor) -> None:
-    simulation = Simulation()
-    simulation.reset(0.0)
+    task = LineTask(TaskConfig.of_article())
+    task.reset(1)
     message = sensor.new()
-    sensor.fill(message, read(simulation, sensor.readings))
+    sensor.fill(message, task.sensors.read(sensor.channel))
     assert watch(sensor.name).check(message) is None
 
 

@@ -21,6 +21,8 @@ from hexapod_sim.sensor_table import CHANNELS, LETTERS
 from hexapod_sim.task import episode_seed
 from hexapod_sim.viewer import ViewerError
 
+from hexapod_sim import sensors
+
 ID = 'hexapod_agent:HexapodLine-v0'
 
 
@@ -125,13 +127,9 @@ def test_sensor_fault_names_channel_step_and_seed(monkeypatch):
     env = HexapodLine('B')
     env.reset(seed=7)
     env.step(np.zeros(30, np.float32))
-    monkeypatch.setattr(
-        'hexapod_agent.environment.env.observe',
-        lambda simulation, channels: (
-            {'linear_velocity': np.full(3, np.nan)}
-            | {key: np.zeros(18) for key in ('joint_angles', 'joint_velocities')}
-        ),
-    )
+    read = sensors.read
+    broken = {'linear_velocity': np.full(3, np.nan)}
+    monkeypatch.setattr(sensors, 'read', lambda robot, keys: read(robot, keys) | broken)
     with pytest.raises(
         ObservationError, match=r'linear_velocity\[0\].*step 2 of episode 0, seed 7'
     ):

@@ -54,6 +54,21 @@ def test_runs_equal_those_trained_alone_to_the_last_bit(
         assert_same_state(run, alone)
 
 
+def test_bad_sensors_are_as_bad_in_a_fleet(small_config, new_run, train_alone, train_fleet):
+    bad = {
+        'imu_data': {'noise': 0.05, 'bias': 0.1, 'delay': 0.05, 'dropout': 0.3, 'rate': 20.0},
+        'line_offset': {'bias': 0.1},
+        'foot_force': {'noise': 1.0, 'dropout': 0.3},
+    }
+    config = small_config.changed({'sensors': bad}, 'a test')
+    fleet = [new_run(config, letters, seed) for letters, seed in RUNS]
+    train_fleet(fleet, places=2)
+    for run, (letters, seed) in zip(fleet, RUNS, strict=True):
+        assert_same_results(run, train_alone(new_run(config, letters, seed)))
+    perfect = train_alone(new_run(small_config, *RUNS[0]))
+    assert fleet[0].summaries[0].episode_return != perfect.summaries[0].episode_return
+
+
 @pytest.mark.parametrize('name', ['small_config', 'switched_config'])
 def test_a_stack_learns_what_its_runs_learn_alone(
     name, request, new_run, train_alone, train_fleet

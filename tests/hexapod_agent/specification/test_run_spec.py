@@ -9,6 +9,9 @@ import pytest
 import yaml
 from hexapod_agent.specification.run_spec import ConfigError, RunSpec
 from hexapod_sim.article import article_text
+from hexapod_sim.sensor_table import LETTERS, SENSORS
+
+from hexapod_sim import quality
 
 
 @pytest.fixture
@@ -31,8 +34,10 @@ def leaves(mapping, prefix=''):
 
 def test_article_names_every_value():
     """No value comes from a default in the code, where its origin would not be told."""
-    config = RunSpec.load()
-    assert set(leaves(yaml.safe_load(article_text()))) == set(leaves(config.to_mapping()))
+    expected = yaml.safe_load(article_text())
+    expected['observations'] = dict.fromkeys(LETTERS, expected['observations']['each'])
+    expected['sensors'] = dict.fromkeys(SENSORS, expected['sensors']['each'])
+    assert set(leaves(expected)) == set(leaves(RunSpec.load().to_mapping()))
 
 
 def test_every_value_of_the_article_has_an_origin():
@@ -45,7 +50,7 @@ def test_every_value_of_the_article_has_an_origin():
 
 def test_sections():
     names = {field.name for field in fields(RunSpec)}
-    assert names == {'observations', 'task', 'cpg', 'learner', 'training'}
+    assert names == {'observations', 'sensors', 'task', 'cpg', 'learner', 'training'}
 
 
 def test_a_file_changes_what_it_names_and_nothing_else(write):
@@ -64,7 +69,10 @@ def test_mapping_round_trip():
 @pytest.mark.parametrize(
     ('text', 'message'),
     [
-        ('ddgp: {}', "unknown key 'ddgp', expected one of observations, task, cpg, learner"),
+        (
+            'ddgp: {}',
+            "unknown key 'ddgp', expected one of observations, sensors, task, cpg",
+        ),
         (
             'learner: {ddpg: {gamma: 1}}',
             "unknown key 'learner.ddpg.gamma', expected one of b",
@@ -163,6 +171,19 @@ def test_observations_are_letters_or_switches():
         RunSpec.from_text('observations: AX', 'a test')
 
 
+def test_the_quality_of_a_sensor_is_a_value_like_any_other():
+    spec = RunSpec.load(None, ['sensors.imu_data.noise=0.05', 'sensors.body_height.rate=10'])
+    assert (spec.value('sensors.imu_data.noise'), spec.sensors['body_height'].rate) == (0.05, 10.0)
+    assert set(spec.differences(RunSpec.load())) == {
+        'sensors.imu_data.noise',
+        'sensors.body_height.rate',
+    }
+    assert RunSpec.from_text(spec.to_text(), 'a test') == spec
+    assert quality.from_text(quality.to_text(spec.sensors)) == {
+        key: found for key, found in spec.sensors.items() if not found.perfect
+    }
+
+
 def test_single_values_are_set_by_dotted_key():
     spec = RunSpec.load(None, ['task.closeness_weight=2', 'observations.C=on', 'cpg.reading=D2'])
     assert (spec.task.closeness_weight, spec.letters, spec.cpg.reading) == (2.0, 'C', 'D2')
@@ -177,6 +198,11 @@ def test_single_values_are_set_by_dotted_key():
         ('=3', 'expected key=value'),
         ('task.nearness=1', "--set task.nearness=1: unknown key 'task.nearness'"),
         ('task=1', 'task is 1, expected keys'),
+        ('sensors.imu.noise=1', "unknown key 'sensors.imu', expected one of joint_states, line_o"),
+        ('sensors.imu_data.noise=-1', 'sensors.imu_data.noise is -1, expected.*or equal to 0'),
+        ('sensors.imu_data.dropout=1', 'sensors.imu_data.dropout is 1, expected.*equal to 0.999'),
+        ('sensors.foot_contacts.bias=1', 'sensors.foot_contacts.bias is 1.0, expected at most 0'),
+        ('sensors.imu_data.quantisation=1', 'is 1.0, expected at most 0.5 for body orientation'),
         ('observations.C=maybe', "observations.C is 'maybe', expected"),
         ('learner.algorithm=ppq', "learner.algorithm is 'ppq', expected"),
         ('task.line_y=[', 'not YAML'),

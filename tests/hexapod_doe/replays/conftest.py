@@ -71,10 +71,11 @@ def messages(task: LineTask, outcome: Outcome) -> dict[str, object]:
 def record(tmp_path: Path) -> Callable[..., tuple[Path, list[list[Outcome]]]]:
     """Return a function that records episodes and returns the bag and their outcomes."""
 
-    def record_bag(config, seeds=(1,), leave_out=(), lose=None, change=None):
+    def record_bag(config, seeds=(1,), leave_out=(), lose=None, change=None, sensors=()):
         from rclpy.serialization import serialize_message
 
-        told = {'run_id': 'walk', 'config': yaml.safe_dump({'task': vars(config)})}
+        spec = {'task': vars(config), 'sensors': dict(sensors)}
+        told = {'run_id': 'walk', 'config': yaml.safe_dump(spec)}
         stamp = 0
         with BagWriter(tmp_path / 'walk', told) as writer:
 

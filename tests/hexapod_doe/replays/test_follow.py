@@ -75,14 +75,14 @@ def topics(namespace='/w'):
 def write(tmp_path):
     """Write a bag of a robot that approaches a line exponentially after each jump."""
 
-    def write_bag(lines, drop_last=False):
+    def write_bag(lines, drop_last=False, spec=''):
         from hexapod_interfaces.msg import LineOffset
         from nav_msgs.msg import Odometry
         from rclpy.serialization import serialize_message
 
         bag = tmp_path / 'follow'
         odom, offsets = topics()
-        with BagWriter(bag, {'run_id': 'follow'}) as writer:
+        with BagWriter(bag, {'run_id': 'follow', 'spec': spec}) as writer:
             writer.add_topic(odom)
             writer.add_topic(offsets)
             y = lines[0]
@@ -127,4 +127,10 @@ def test_a_line_that_stays_is_refused(write, capsys):
 def test_a_lost_sample_is_told(write):
     bag = write(np.zeros(10), drop_last=True)
     with pytest.raises(BagError, match='10 samples of odom and 9 of line_offset'):
+        read_track(bag)
+
+
+def test_a_bad_line_sensor_is_refused(write):
+    bag = write(np.zeros(10), spec='sensors: {line_offset: {noise: 0.01}}')
+    with pytest.raises(BagError, match=r'line_offset has the errors of its sensors\.line'):
         read_track(bag)

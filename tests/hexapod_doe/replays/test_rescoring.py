@@ -55,6 +55,15 @@ def test_the_shipped_recording_comes_out_the_same():
         assert scored.terms[name] == result[f'term_{name}']
 
 
+def test_a_bad_line_sensor_does_not_change_the_score(record):
+    def err(name, step, message):
+        if name == 'line_offset':
+            message.offset += 0.3
+
+    bag, played = record(SHORT, change=err, sensors={'line_offset': {'bias': 0.3}})
+    assert [list(row.outcomes) for row in scores(bag, SHORT)] == played
+
+
 def test_every_episode_gets_the_outcomes_of_the_task(record):
     bag, played = record(SHORT, seeds=(1, 2))
     scored = scores(bag, SHORT)
