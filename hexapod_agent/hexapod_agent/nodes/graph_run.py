@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import functools
 import math
-from array import array
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -17,7 +16,6 @@ from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import EpisodeResult
 from hexapod_node.coroutines import until_true
 from hexapod_node.matching import count_subscriber_nodes, subscribed_topics, unmatched
-from hexapod_node.stamps import time_message
 from hexapod_node.timers import call_every
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from hexapod_sim.sensor_table import CHANNELS
@@ -31,6 +29,7 @@ from hexapod_agent.learning.provenance import provenance
 from hexapod_agent.learning.summary import EpisodeSummary
 from hexapod_agent.learning.training import Trainer
 from hexapod_agent.nodes.control_loop import OUTCOME, ControlLoop
+from hexapod_agent.nodes.messages import summary_to_message
 from hexapod_agent.nodes.peers import PeerError, Peers
 from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_sim import quality
@@ -289,22 +288,7 @@ class GraphRun:
         )
 
     def _result(self, summary: EpisodeSummary, last_ns: int) -> EpisodeResult:
-        result = EpisodeResult(
-            run_id=self._goal.run_id,
-            episode=summary.episode,
-            steps=summary.steps,
-            episode_return=summary.episode_return,
-            average_return=summary.average_return,
-            term_names=list(summary.terms),
-            term_values=array('d', summary.terms.values()),
-            metric_names=list(summary.metrics),
-            metric_values=array('d', summary.metrics.values()),
-            terminated=summary.terminated,
-            cause=summary.cause,
-            **vars(self._loop.counts),
-        )
-        result.header.stamp = time_message(last_ns)
-        return result
+        return summary_to_message(self._goal.run_id, summary, self._loop.counts, last_ns)
 
     def _give_sign_of_life(self) -> None:
         """Tell whoever gave the goal that the run goes on."""
