@@ -105,7 +105,7 @@ def faults(channel: Channel) -> dict[str, Callable[[Any], None]]:
         found['flipped_gravity'] = _changed('linear_acceleration', lambda values: -values)
     # An orientation has no unit: what comes along with it does.
     measured = next((field for field in channel.fields if field.unit != '1'), None)
-    if measured is not None:
+    if measured is not None and measured.unit in OTHER_UNITS:
         factor = max(factor for _, factor in OTHER_UNITS[measured.unit])
         found['wrong_unit'] = _changed(measured.path, lambda values: factor * values)
     return found

@@ -19,4 +19,4 @@ OTHER_UNITS: dict[str, tuple[tuple[str, float], ...]] = {
     'N': (('kgf', 1.0 / GRAVITY), ('gf', 1000.0 / GRAVITY), ('mN', 1000.0)),
     '1': (('percent', 100.0),),
 }
-"""By our unit: names, and how many of each make one of ours."""
+"""By our unit: names, and how many of each make one of ours. A unit may be missing."""

@@ -41,7 +41,7 @@ def other_unit(unit: str, found: float, most: float, least: float = 0.0) -> tupl
     Returns:
         ('', 1.0) if it is so in none that drivers use.
     """
-    for name, factor in OTHER_UNITS[unit]:
+    for name, factor in OTHER_UNITS.get(unit, ()):
         if least <= found / factor <= most:
             return name, factor
     return '', 1.0
