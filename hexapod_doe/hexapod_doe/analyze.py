@@ -21,6 +21,7 @@ from hexapod_doe.errors import AnalysisError, BagError, TableError
 from hexapod_doe.records.options import Options
 from hexapod_doe.records.results import Analysis
 from hexapod_doe.reporting.report import write_report
+from hexapod_doe.reporting.words import set_text
 from hexapod_doe.stages import stage
 from hexapod_doe.tables.bag_response import DEFAULT_RESPONSE
 from hexapod_doe.tables.bag_table import bag_responses, confirmation_runs, plan_rule, read_bags
@@ -66,7 +67,9 @@ def summary(analysis: Analysis) -> str:
         text = ' / '.join('–' if value is None else f'{value:.4f}' for value in numbers)
         lines.append(f'  {step.name:12} {len(step.terms):3} terms  R² / adj / pred  {text}')
     lines += [f'  note: {caveat}' for caveat in analysis.caveats]
-    lines.append(f'choice: {analysis.choice} ({analysis.choice_rule})')
+    chosen = next(p.levels for p in analysis.predictions if p.label == analysis.choice)
+    levels = '' if analysis.design.sensors else f' = {set_text(analysis.design, chosen)}'
+    lines.append(f'choice: {analysis.choice}{levels} ({analysis.choice_rule})')
     return '\n'.join(lines)
 
 

@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from hexapod_doe.analysis.describe import design_caveats, model_caveats, summarise
+from hexapod_doe.bags.run_identity import differences
 from hexapod_doe.choosing.attribution import alias_safe
 from hexapod_doe.choosing.choice import Failures, model_failures
 from hexapod_doe.choosing.conclusions import conclude
@@ -47,16 +48,37 @@ def analyse(
         confirmation_runs: Responses of confirmation runs by label, to be judged.
 
     Raises:
-        TableError: A table does not allow what the options ask for.
+        TableError: A table does not allow what the options ask for, or has other factors.
         AliasedTermsError: The named terms cannot be told apart.
         AnalysisError: An option cannot be read.
     """
     options = options.as_article() if options.article else options
     first, *others = tables
+    for other in others:
+        if (other.factors, other.named) != (first.factors, first.named):
+            raise TableError(
+                f'{other.title}: factors {_factors(other)}, expected those of {first.title}, '
+                f'{_factors(first)}; analyse one of them at a time'
+            )
     compared = tuple(_analyse(other, options, {}) for other in others)
-    return dataclasses.replace(
-        _analyse(first, options, confirmation_runs or {}), compared=compared
-    )
+    found = _analyse(first, options, confirmation_runs or {})
+    caveats = (*found.caveats, *_comparison_caveats(first, others))
+    return dataclasses.replace(found, compared=compared, caveats=caveats)
+
+
+def _factors(table: RunTable) -> str:
+    return ', '.join(factor.change for factor in table.named) or ','.join(table.factors)
+
+
+def _comparison_caveats(first: RunTable, others: Sequence[RunTable]) -> list[str]:
+    """Return what a reader must know of designs whose runs differ in more than their factors."""
+    found = {other.title: differences(other.settings, first.settings) for other in others}
+    return [
+        f'The runs of {title} are not like those of {first.title} ({odd}): each design is '
+        'analysed by itself, and they differ by that, too.'
+        for title, odd in found.items()
+        if odd
+    ]
 
 
 def _analyse(
@@ -80,7 +102,8 @@ def _analyse(
         **conclude(table, outlook, options, rng),
         confirmation=confirm(outlook, options.confirmation, confirmation_runs),
     )
-    failed = _failure_caveats(table, options, failures)
+    noun = 'sensor' if base.design.sensors else 'factor'
+    failed = _failure_caveats(table, options, failures, noun)
     spread = dispersion_caveat(outlook.dispersion, 'successes' if analysis.two_part else 'runs')
     mean = [e.predictions for e in analysis.estimands if e.name == 'mean']
     if analysis.two_part is not None and mean:
@@ -89,10 +112,12 @@ def _analyse(
     return dataclasses.replace(analysis, caveats=caveats)
 
 
-def _failure_caveats(table: RunTable, options: Options, failures: Failures | None) -> list[str]:
+def _failure_caveats(
+    table: RunTable, options: Options, failures: Failures | None, noun: str
+) -> list[str]:
     if failures is not None:
         runs = int(table.rows.groupby('case').size().max())
-        return [*failure_caveats(failures.record, options.alpha), *few_runs_caveat(runs)]
+        return [*failure_caveats(failures.record, options.alpha, noun), *few_runs_caveat(runs)]
     threshold = options.failure_threshold
     if options.estimand != 'mean':
         return []

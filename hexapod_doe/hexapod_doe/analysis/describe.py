@@ -33,6 +33,7 @@ def summarise(table: RunTable, aliases: Mapping[str, str]) -> DesignSummary:
         name=table.design or _size(len(table.factors), expected, len(runs), regular),
         factors=table.factors,
         factor_names=table.factor_names,
+        named=table.named,
         defining_relation=relation,
         resolution=length,
         cases=len(runs),

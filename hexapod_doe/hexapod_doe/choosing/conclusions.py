@@ -64,7 +64,7 @@ def conclude(
 
 
 def _against_all(outlook: Outlook, level: float) -> Estimate | None:
-    """Compare the first of the ranking with the set of all sensors, by the model that states."""
+    """Compare the first of the ranking with the set of all factors, by the model that states."""
     stated = outlook.stated
     if stated is None:
         return None
@@ -75,7 +75,17 @@ def _against_all(outlook: Outlook, level: float) -> Estimate | None:
 
 
 def _purchase(table: RunTable, outlook: Outlook, options: Options) -> Purchase | None:
-    """Price the sets, if a device table is given or the default one fits the factors."""
-    devices = read_devices(options.devices)
-    meant = options.devices is not None or set(table.factors) == devices.letters
-    return purchase(outlook, devices, options.level, options.delta) if meant else None
+    """Price the sets, if a device table is given or the default one fits the factors.
+
+    Of other factors than sensors only those cost something that name a device.
+    """
+    devices, given = read_devices(options.devices), options.devices is not None
+    if all(factor.is_sensor for factor in table.named):
+        meant = given or set(table.factors) == devices.letters
+        return purchase(outlook, devices, options.level, options.delta) if meant else None
+    devices = devices.of_factors(table.named)
+    needed = {factor.letter for factor in table.named if factor.device is not None}
+    if not needed or not (given or needed <= devices.letters):
+        return None
+    free = set(table.factors) - needed
+    return purchase(outlook, devices, options.level, options.delta, free)

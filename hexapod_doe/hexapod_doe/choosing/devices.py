@@ -4,8 +4,8 @@
 """The table of purchasable devices, and the cheapest ones that yield a set of observations."""
 
 import math
-from collections.abc import Iterable
-from dataclasses import dataclass, fields
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, fields, replace
 from importlib.resources import files
 from itertools import combinations
 from pathlib import Path
@@ -14,6 +14,7 @@ from typing import Any
 import yaml
 from hexapod_sim.sums import ordered_sum
 
+from hexapod_doe.designs.factor import Factor
 from hexapod_doe.errors import AnalysisError
 from hexapod_doe.records.findings import Device
 
@@ -32,6 +33,20 @@ class DeviceTable:
     def letters(self) -> set[str]:
         """Every observation that some device yields."""
         return set(''.join(device.yields for device in self.devices))
+
+    def of_factors(self, factors: Sequence[Factor]) -> 'DeviceTable':
+        """Return the devices that some factors name: of sensors by letter, of others by name."""
+        needing = [factor for factor in factors if factor.device is not None]
+
+        def yields(device: Device) -> str:
+            return ''.join(
+                factor.letter
+                for factor in needing
+                if (factor.sensor or '?') in device.yields or factor.device == device.name
+            )
+
+        made = (replace(device, yields=yields(device)) for device in self.devices)
+        return replace(self, devices=tuple(device for device in made if device.yields))
 
     def cheapest(self, letters: Iterable[str]) -> tuple[Device, ...]:
         """Return the cheapest devices that yield all the letters; the fewest on a tie.

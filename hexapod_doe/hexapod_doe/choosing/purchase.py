@@ -6,7 +6,7 @@
 Decisions come from the draws of the selected model, numbers with intervals from the stated one.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import numpy as np
 from hexapod_sim.sums import ordered_sum
@@ -19,7 +19,11 @@ from hexapod_doe.records.findings import Breakage, Device, PricedSet, Purchase
 
 
 def purchase(
-    outlook: Outlook, table: DeviceTable, level: float, delta: float | None = None
+    outlook: Outlook,
+    table: DeviceTable,
+    level: float,
+    delta: float | None = None,
+    free: Collection[str] = (),
 ) -> Purchase | None:
     """Price every combination and weigh it against its reward.
 
@@ -28,6 +32,7 @@ def purchase(
         table: The devices.
         level: Confidence of the intervals.
         delta: What a set may be worse than the best, in reward units; None for the table's share.
+        free: Factors that need no device.
 
     Returns:
         None where the model leaves no error.
@@ -36,7 +41,7 @@ def purchase(
         return None
     if delta is None:
         delta = table.delta_share * abs(float(np.nanmax(outlook.fits)))
-    devices = [table.cheapest(letters_of(label)) for label in outlook.labels]
+    devices = [table.cheapest(set(letters_of(label)) - set(free)) for label in outlook.labels]
     cost = np.array([ordered_sum(device.cost for device in needed) for needed in devices])
     best = outlook.draws.max(axis=1, keepdims=True)
     not_worse = (outlook.draws >= best - delta).mean(axis=0)
@@ -58,7 +63,12 @@ def purchase(
             loss
             for label in dict.fromkeys((outlook.ranking[0], cheapest))
             for loss in breakage(
-                label, outlook.labels, devices[outlook.labels.index(label)], outlook.stated, level
+                label,
+                outlook.labels,
+                devices[outlook.labels.index(label)],
+                outlook.stated,
+                level,
+                free,
             )
         ),
     )
@@ -156,12 +166,14 @@ def breakage(
     devices: Sequence[Device],
     stated: Stated,
     level: float,
+    free: Collection[str] = (),
 ) -> tuple[Breakage, ...]:
     """Return what each device of a set is worth: the reward lost without what it alone yields."""
     whole = labels.index(label)
     result = []
     for broken in devices:
         others = set(''.join(device.yields for device in devices if device is not broken))
+        others |= set(free)
         left = ''.join(letter for letter in letters_of(label) if letter in others) or EMPTY_SET
         rest = labels.index(left)
         low, high = interval_of(stated.draws[:, whole] - stated.draws[:, rest], level)

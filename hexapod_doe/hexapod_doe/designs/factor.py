@@ -46,11 +46,14 @@ class Factor:
 
     @property
     def is_sensor(self) -> bool:
-        """Whether it is that a channel is observed or not."""
-        return self.key == f'{OBSERVATIONS}{self.letter}' and (self.low, self.high) == (
-            False,
-            True,
-        )
+        """Whether it is that the channel of its letter is observed or not."""
+        return self.sensor == self.letter
+
+    @property
+    def sensor(self) -> str:
+        """Letter of the channel that is observed at the high level; empty for other factors."""
+        own = self.key.startswith(OBSERVATIONS) and self.high is True
+        return self.key.removeprefix(OBSERVATIONS) if own else ''
 
     def value(self, level: float) -> Any:
         """Return the value of the key at a coded level."""
@@ -171,6 +174,12 @@ class Treatments:
             _nest(changes, factor.key.split('.'), factor.value(level))
         source = ', '.join(f'{each.letter} {each.text(level)}' for each, level in pairs)
         return self.base.changed(changes, f'factors {source}')
+
+
+def factors_in(metadata: Mapping[str, str]) -> tuple[Factor, ...] | None:
+    """Return the factors that a run's bag names; None where they are sensors alone."""
+    text = metadata.get(FACTORS)
+    return None if text is None else tuple(Factor(**entry) for entry in yaml.safe_load(text))
 
 
 def sensors(letters: Iterable[str]) -> Treatments:

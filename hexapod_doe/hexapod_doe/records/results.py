@@ -8,7 +8,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import pandas as pd
+from hexapod_sim.sensor_table import LETTERS
 
+from hexapod_doe.designs.factor import Factor
 from hexapod_doe.fitting.anova import AnovaRow
 from hexapod_doe.fitting.blocks import BlockTest
 from hexapod_doe.fitting.curvature import Curvature
@@ -38,6 +40,8 @@ class DesignSummary:
     factors: tuple[str, ...]
     factor_names: Mapping[str, str]
     """Letter to what it switches on, such as `A` to `joint torques`; may be empty."""
+    named: tuple[Factor, ...]
+    """The factors with their keys and levels; empty for tables of other programs."""
     defining_relation: str
     resolution: int | None
     cases: int
@@ -54,6 +58,13 @@ class DesignSummary:
     """How many blocks; 0 if none."""
     aliases: Mapping[str, str]
     """Each estimable term and its alias string."""
+
+    @property
+    def sensors(self) -> bool:
+        """Whether a set of letters is a set of sensors, as far as is known."""
+        if not self.named:
+            return set(self.factors) <= set(LETTERS)
+        return all(factor.is_sensor for factor in self.named)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -208,7 +219,7 @@ class Analysis:
     confirmation: Confirmation | None = None
     purchase: Purchase | None = None
     against_all: Estimate | None = None
-    """How much the choice earns more than all sensors; None where the model leaves no error."""
+    """How much the choice earns more than the whole set; None where the model leaves no error."""
     next_steps: tuple[str, ...] = ()
     """Lines to type next."""
     compared: tuple['Analysis', ...] = ()

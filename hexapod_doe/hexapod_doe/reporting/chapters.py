@@ -71,8 +71,9 @@ CHAPTERS = (
     Chapter(
         'answer',
         'The best sets',
-        'Which sensors the best predicted sets hold, and how far apart they are.',
+        'Which {noun}s the best predicted sets hold, and how far apart they are.',
         (
+            tables.factors,
             predictions.top_sets,
             findings.confirmation,
             predictions.ranked_predictions,
@@ -83,12 +84,12 @@ CHAPTERS = (
     Chapter(
         'purchase',
         'What to buy',
-        'One device may give several sensors, so that prices do not add up letter by letter.',
+        'One device may give several {noun}s, so that prices do not add up letter by letter.',
         (purchase.cost_front, findings.front, findings.breakage, findings.devices),
     ),
     Chapter(
         'evidence',
-        'What each sensor does',
+        'What each {noun} does',
         'The effects that the predictions are made of.',
         (
             effects.main_effects,

@@ -13,12 +13,13 @@ from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
-from hexapod_doe.records.results import Analysis
+from hexapod_doe.records.results import Analysis, DesignSummary
 from hexapod_doe.reporting import text
 from hexapod_doe.reporting.chapters import CHAPTERS
 from hexapod_doe.reporting.figures.chart import Chart
 from hexapod_doe.reporting.figures.style import theme_css
 from hexapod_doe.reporting.tables import Table
+from hexapod_doe.reporting.words import level_text, words
 
 _SHORT_TABLE = 16
 """A longer table is folded up."""
@@ -67,12 +68,15 @@ def render(analysis: Analysis, chapters: Iterable[Section]) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    design, chosen = analysis.design, text.chosen_standing(analysis)
     environment.tests['chart'] = lambda item: isinstance(item, Chart)
     return environment.get_template('report.html.jinja').render(
         analysis=analysis,
         sections=list(chapters),
         text=text,
-        chosen=text.chosen_standing(analysis),
+        chosen=chosen,
+        words=words(design),
+        labels={f: _label(design, f, chosen.levels[f]) for f in design.factors},
         light=theme_css(0),
         dark=theme_css(1),
         short=_SHORT_TABLE,
@@ -81,8 +85,21 @@ def render(analysis: Analysis, chapters: Iterable[Section]) -> str:
 
 def sections(analysis: Analysis) -> list[Section]:
     """Return the chapters that the analysis has something to say in."""
+    noun = words(analysis.design).noun
     made = [
-        Section(chapter.anchor, chapter.title, chapter.lead, chapter.items(analysis))
+        Section(
+            chapter.anchor,
+            chapter.title.format(noun=noun),
+            chapter.lead.format(noun=noun),
+            chapter.items(analysis),
+        )
         for chapter in CHAPTERS
     ]
     return [section for section in made if section.items]
+
+
+def _label(design: DesignSummary, letter: str, level: float) -> str:
+    """Return the name of a sensor, or a factor with its level."""
+    if design.sensors or not design.named:
+        return design.factor_names.get(letter, '')
+    return level_text(design, letter, level)

@@ -32,7 +32,7 @@ class Standing:
 
     @property
     def size(self) -> int:
-        """How many sensors the set holds."""
+        """How many factors the set has at their high level."""
         return sum(level > 0 for level in self.levels.values())
 
 

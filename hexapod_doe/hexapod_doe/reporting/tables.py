@@ -9,10 +9,12 @@ from pathlib import Path
 
 import pandas as pd
 
+from hexapod_doe.designs.factor import shown
 from hexapod_doe.fitting.alias_matrix import short_alias, with_partial_aliases
 from hexapod_doe.records.results import Analysis, Prediction
 from hexapod_doe.reporting.formats import MISSING, aligned, chance, interval
 from hexapod_doe.reporting.standing import Standing, standings
+from hexapod_doe.reporting.words import factor_text, words
 from hexapod_doe.sheets.write import write_csv
 
 MAX_ROWS = 512
@@ -123,23 +125,46 @@ def alias_matrix(analysis: Analysis) -> Table | None:
 
 def main_effects(analysis: Analysis) -> Table:
     """Tabulate the mean response with and without each factor."""
-    names, found = analysis.design.factor_names, analysis.main_effects
+    design, found = analysis.design, analysis.main_effects
+    named = words(design)
     return Table(
         'main_effect_means',
         'Main effects',
-        'Fitted means over all combinations of the other sensors, by the first model. Raw means '
-        'are of the runs that there are, none left out: where cases have unequal runs, other '
-        'sensors have a part in their difference.',
+        f'Fitted means over all combinations of the other {named.noun}s, by the first model. Raw '
+        'means are of the runs that there are, none left out: where cases have unequal runs, '
+        f'other {named.noun}s have a part in their difference.',
         {
-            'sensor': [f'{e.factor} {names.get(e.factor, "")}'.strip() for e in found],
-            'without': aligned([e.fitted_without for e in found], 4),
-            'with': aligned([e.fitted_with for e in found], 4),
+            named.noun: [factor_text(design, e.factor) for e in found],
+            named.low: aligned([e.fitted_without for e in found], 4),
+            named.high: aligned([e.fitted_with for e in found], 4),
             'effect': aligned([e.effect for e in found], 4, sign=True),
             'standard error': aligned([e.se_effect for e in found], 3),
-            'raw mean without': aligned([e.mean_without for e in found], 4),
-            'raw mean with': aligned([e.mean_with for e in found], 4),
+            f'raw mean {named.low}': aligned([e.mean_without for e in found], 4),
+            f'raw mean {named.high}': aligned([e.mean_with for e in found], 4),
         },
         pd.DataFrame([vars(effect) for effect in found]),
+    )
+
+
+def factors(analysis: Analysis) -> Table | None:
+    """Tabulate the factors with their levels, where they are not sensors alone."""
+    design = analysis.design
+    if design.sensors or not design.named:
+        return None
+    cells = {
+        'letter': [factor.letter for factor in design.named],
+        'factor': [factor.name for factor in design.named],
+        'low': [shown(factor.low) for factor in design.named],
+        'high': [shown(factor.high) for factor in design.named],
+        'key': [factor.key for factor in design.named],
+    }
+    return Table(
+        'factors',
+        f'The {len(design.named)} factors',
+        'A set is named by the letters of its factors at the high level; the others are at the '
+        'low one.',
+        cells,
+        pd.DataFrame([factor.entry() for factor in design.named]),
     )
 
 

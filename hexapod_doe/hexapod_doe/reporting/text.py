@@ -24,6 +24,7 @@ from hexapod_doe.reporting.formats import (
     signed,
 )
 from hexapod_doe.reporting.standing import Standing, all_alike, deciding_parts, standings
+from hexapod_doe.reporting.words import set_text, words
 
 TOUR_EPISODES = 100
 """With fewer episodes than this an agent has hardly begun to learn."""
@@ -56,7 +57,7 @@ def caution(analysis: Analysis) -> str:
         return (
             f'{capitalised(count(length, "episode"))} {"is" if length == 1 else "are"} a tour, '
             f'not a conclusion: the agents have hardly begun to learn{tail}. This page shows '
-            'what the method says, not which sensors to buy.'
+            f'what the method says, not {words(analysis.design).question}.'
         )
     if length is not None and length < FULL_TRAINING / 2:
         return (
@@ -77,13 +78,13 @@ def caution(analysis: Analysis) -> str:
 
 def headline(analysis: Analysis) -> str:
     """Return the answer in one sentence."""
-    name = name_of(chosen_standing(analysis))
+    name = name_of(analysis, chosen_standing(analysis))
     if all_alike(standings(analysis)):
-        return 'These runs show no difference between the sets of sensors'
+        return f'These runs show no difference between the {words(analysis.design).sets}'
     if analysis.final.r2_pred is None:
         return f'{capitalised(name)} comes first; how surely, these runs cannot say'
     if analysis.final.r2_pred <= 0:
-        return f'No set of sensors stands out yet; {name} comes first'
+        return f'No {words(analysis.design).set} stands out yet; {name} comes first'
     return f'Choose {name}'
 
 
@@ -92,16 +93,22 @@ def chosen_standing(analysis: Analysis) -> Standing:
     return next(s for s in standings(analysis) if s.label == analysis.choice)
 
 
-def name_of(standing: Standing) -> str:
-    """Return a set's letters, or words for the set without any."""
-    return standing.label if standing.size else 'no optional sensor'
+def name_of(analysis: Analysis, standing: Standing) -> str:
+    """Return the letters of a set of sensors, the levels of other factors."""
+    design = analysis.design
+    if design.named and not design.sensors:
+        return set_text(design, standing.levels)
+    return standing.label if standing.size else words(design).none
 
 
-def sensors_of(analysis: Analysis, standing: Standing) -> str:
-    """Return the names of a set's sensors for a sentence."""
-    names = analysis.design.factor_names
-    on = [names.get(f, f) for f, level in standing.levels.items() if level > 0]
-    return listing(on, limit=len(on)) or 'only what is always observed'
+def description(analysis: Analysis, standing: Standing) -> str:
+    """Return what a set holds: the names of its sensors, or its letters in tables and figures."""
+    design = analysis.design
+    if design.named and not design.sensors:
+        return f'{standing.label} in the tables and figures'
+    if not design.sensors:
+        return set_text(design, standing.levels) or words(design).none
+    return set_text(design, standing.levels) or 'only what is always observed'
 
 
 def facts(analysis: Analysis) -> list[Fact]:
@@ -126,11 +133,12 @@ def _level(analysis: Analysis) -> str:
 
 
 def _against_all(analysis: Analysis, best: Standing) -> Fact:
-    """Return what the choice earns more than all sensors, as a number where it can be told."""
-    label = 'against all sensors'
+    """Return what the choice earns more than the whole set, as a number where it can be told."""
+    whole = words(analysis.design).whole
+    label = f'against {whole}'
     every = max(standings(analysis), key=lambda standing: standing.size)
     if every.label == best.label:
-        return Fact(label, 'the same', 'it is all sensors')
+        return Fact(label, 'the same', f'it is {whole}')
     gain = analysis.against_all
     if gain is None or None in gain.ci:
         note = f'predicted {signed(best.value - every.value)}; how surely, these runs cannot say'

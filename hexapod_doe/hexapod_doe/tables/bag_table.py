@@ -8,15 +8,16 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import pandas as pd
-from hexapod_sim.sensor_table import CHANNELS, LETTERS
 
-from hexapod_doe.bags.run_identity import CONFIG, differences, making, odd_runs, settings
+from hexapod_doe.bags.run_identity import CONFIG, differences, making, odd_runs
 from hexapod_doe.bags.run_record import RunRecord, find_bags, is_complete, read_run
 from hexapod_doe.campaigns.campaign import PLAN_FILE
+from hexapod_doe.designs.factor import Factor
 from hexapod_doe.designs.plan_file import read_plan
 from hexapod_doe.designs.plan_types import Confirmation
 from hexapod_doe.errors import BagError, TableError
 from hexapod_doe.fitting.model import EMPTY_SET
+from hexapod_doe.tables.bag_factors import factors_of, known, set_of, shared_settings
 from hexapod_doe.tables.bag_groups import Group, Part, group_runs, sound_bags
 from hexapod_doe.tables.bag_response import DEFAULT_RESPONSE, response_of
 from hexapod_doe.tables.table import (
@@ -46,7 +47,7 @@ def read_bags(
 
     Args:
         paths: Directories of campaigns or bags.
-        factors: Letters of the observations that may be on; by default all.
+        factors: Letters of the factors to analyse; by default those of the plan, or all sensors.
         response: What a run is judged by, see `bag_response`.
         blocks: Key of the metadata that tells the blocks apart, such as `seed`; empty for none,
             None for what the campaign's plan says, if there are two or more yet.
@@ -71,8 +72,10 @@ def read_bags(
         )
     if not groups:
         raise TableError(f'{source}: no run to analyse. {" ".join(found)}')
-    names = tuple(factors or LETTERS)
-    return [_table(group, source, (*skipped, *found), names, response, blocks) for group in groups]
+    return [
+        _table(group, source, (*skipped, *found), factors_of(group, factors), response, blocks)
+        for group in groups
+    ]
 
 
 def plan_rule(paths: Sequence[Path]) -> Confirmation:
@@ -122,9 +125,9 @@ def _whole_sets(part: Part) -> list[RunRecord]:
     """Return the runs of the sets of which every row is done."""
     assert part.plan is not None  # it confirms
     lacking = set(part.plan.rows['run_id']) - {run.run_id for run in part.runs}
-    rows = part.plan.rows.set_index('run_id')['observations']
-    open_sets = {rows[run_id] for run_id in lacking}
-    return [run for run in part.runs if run.metadata['observations'] not in open_sets]
+    cases = part.plan.rows.set_index('run_id')['case']
+    open_cases = {cases[run_id] for run_id in lacking}
+    return [run for run in part.runs if cases.get(run.run_id) not in open_cases]
 
 
 def _responses(
@@ -132,9 +135,9 @@ def _responses(
 ) -> dict[str, list[float]]:
     responses: dict[str, list[float]] = {}
     for run in runs:
-        if odd := differences(settings(run.metadata), like or {}):
+        if odd := differences(shared_settings(run), like or {}):
             raise BagError(f'run {run.run_id} is not like the runs that it is to confirm: {odd}')
-        label = ''.join(sorted(_known(run, 'observations'))) or EMPTY_SET
+        label = ''.join(sorted(set_of(run))) or EMPTY_SET
         responses.setdefault(label, []).append(response_of(run, response))
     return responses
 
@@ -143,27 +146,28 @@ def _table(
     group: Group,
     source: str,
     caveats: tuple[str, ...],
-    factors: tuple[str, ...],
+    factors: tuple[Factor, ...],
     response: str,
     blocks: str | None,
 ) -> RunTable:
     runs = group.runs
     blocks = _planned_blocks(group) if blocks is None else blocks
-    raw = pd.DataFrame(_rows(group, factors, response, blocks))
+    letters = tuple(factor.letter for factor in factors)
+    raw = pd.DataFrame(_rows(group, letters, response, blocks))
     made = _check_alike(group, blocks)
-    rows, found = build_rows(raw.dropna(axis=1), factors)
+    rows, found = build_rows(raw.dropna(axis=1), letters)
     return RunTable(
         title=group.title,
         source=source,
         response=response,
-        factors=factors,
+        factors=letters,
         rows=rows,
         caveats=(*caveats, *made, *found),
         design=group.settings.design if group.settings else '',
         block_column=blocks,
-        factor_names={channel.letter: channel.name for channel in CHANNELS if channel.letter},
+        named=factors,
         curves=_curves(runs, rows),
-        settings=settings(runs[0].metadata),
+        settings=shared_settings(runs[0]),
     )
 
 
@@ -173,7 +177,7 @@ def _check_alike(group: Group, blocks: str) -> tuple[str, ...]:
     Raises:
         TableError: Runs differ in length or configuration, and it is not taken for a block.
     """
-    odd = odd_runs({run.run_id: settings(run.metadata) for run in group.runs}, without=[blocks])
+    odd = odd_runs({run.run_id: shared_settings(run) for run in group.runs}, without=[blocks])
     if odd:
         more = [f'and {len(odd) - _NAMED} more'] if len(odd) > _NAMED else []
         told = '; '.join([*list(odd.values())[:_NAMED], *more])
@@ -197,7 +201,7 @@ def _planned_blocks(group: Group) -> str:
     column = group.settings.block_column if group.settings else ''
     if not column:
         return ''
-    sets = pd.Series([_known(run, 'observations') for run in group.runs])
+    sets = pd.Series([set_of(run) for run in group.runs])
     block = pd.Series(_blocks(group, column), dtype=object)
     return '' if block_fault(sets, block) else column
 
@@ -227,13 +231,15 @@ def _rows(
     runs = group.runs
     labels = _blocks(group, blocks) if blocks else [None] * len(runs)
     if blocks and None in labels:
-        _known(runs[labels.index(None)], blocks)
+        known(runs[labels.index(None)], blocks)
     # Two plans that add to one number their cases alike: then the levels tell the cases.
-    known = _DESIGN_ROW[1:] if any('/' in run.run_id for run in runs) else _DESIGN_ROW
+    numbers = _DESIGN_ROW[1:] if any('/' in run.run_id for run in runs) else _DESIGN_ROW
     rows: list[dict[str, object]] = []
     begun = 0
     for part in group.parts:
-        own = [_row(run, factors, response, known) for run in runs[len(rows) :][: len(part.runs)]]
+        own = [
+            _row(run, factors, response, numbers) for run in runs[len(rows) :][: len(part.runs)]
+        ]
         orders = [int(run.metadata.get('RunOrder', 0)) for run in part.runs]
         rows += [
             row | ({'RunOrder': begun + order} if order else {})
@@ -246,21 +252,15 @@ def _rows(
 
 
 def _row(
-    run: RunRecord, factors: Sequence[str], response: str, known: Sequence[str]
+    run: RunRecord, factors: Sequence[str], response: str, numbers: Sequence[str]
 ) -> dict[str, object]:
-    letters = _known(run, 'observations')
+    letters = set_of(run)
     return {
         'run_id': run.run_id,
-        **{name: int(run.metadata[name]) for name in known if run.metadata.get(name)},
+        **{name: int(run.metadata[name]) for name in numbers if run.metadata.get(name)},
         **{factor: 1 if factor in letters else -1 for factor in factors},
         RESPONSE: response_of(run, response),
     }
-
-
-def _known(run: RunRecord, key: str) -> str:
-    if key not in run.metadata:
-        raise BagError(f'run {run.run_id}: its metadata lacks the key {key!r}')
-    return run.metadata[key]
 
 
 def _curves(runs: Iterable[RunRecord], rows: pd.DataFrame) -> pd.DataFrame:

@@ -18,7 +18,7 @@ _ENOUGH = 3
 """Runs of a case from which on the chances of a choice came true in the study of coverage."""
 
 
-def failure_caveats(record: TwoPart, alpha: float) -> list[str]:
+def failure_caveats(record: TwoPart, alpha: float, noun: str = 'factor') -> list[str]:
     """Return what a reader must know about failed runs and about their model."""
     text = (
         f'{record.failures} of {record.runs} runs failed (response below {record.threshold:g}): '
@@ -35,7 +35,7 @@ def failure_caveats(record: TwoPart, alpha: float) -> list[str]:
     if not any(map(is_interaction, record.failure_terms)):
         caveats.append(
             'There are too few failures, or successes, for interactions in the model of failures: '
-            'it holds main effects only, and its intervals hold only if no sensor changes what '
+            f'it holds main effects only, and its intervals hold only if no {noun} changes what '
             'another one does to the chance of failure.'
         )
     misfit = record.failure_lack_of_fit

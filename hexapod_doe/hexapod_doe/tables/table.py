@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pandas as pd
 
+from hexapod_doe.designs.factor import Factor
 from hexapod_doe.errors import TableError
 from hexapod_doe.fitting.blocks import block_basis, no_blocks
 from hexapod_doe.fitting.model import centre_points, labels
@@ -35,12 +36,18 @@ class RunTable:
     rows: pd.DataFrame
     caveats: tuple[str, ...] = ()
     design: str = ''
-    factor_names: Mapping[str, str] = field(default_factory=dict)
+    named: tuple[Factor, ...] = ()
+    """The factors as a plan has them; empty where columns have letters alone."""
     curves: pd.DataFrame = field(default_factory=lambda: pd.DataFrame(columns=CURVE_COLUMNS))
     block_column: str = ''
     """What the blocks are of, such as `seed`; empty if the runs are in none."""
     settings: Mapping[str, str] = field(default_factory=dict)
     """Length and configuration of the runs, see `bags.run_identity`; empty for other tables."""
+
+    @property
+    def factor_names(self) -> dict[str, str]:
+        """The names of the factors by letter, as far as they have one."""
+        return {factor.letter: factor.name for factor in self.named}
 
     @property
     def levels(self) -> pd.DataFrame:

@@ -10,15 +10,15 @@ import pandas as pd
 import pytest
 from hexapod_doe.analysis.analysis import analyse
 from hexapod_doe.designs.design import fraction
+from hexapod_doe.designs.factor import default_factors
 from hexapod_doe.designs.plan_table import make_plan
 from hexapod_doe.records.options import Options
 from hexapod_doe.records.results import Analysis
 from hexapod_doe.reporting.report import write_report
 from hexapod_doe.tables.table import RunTable, build_rows
-from hexapod_sim.sensor_table import CHANNELS
 
 LETTERS = 'ABCDEFG'  # of the design, however many sensors the table has
-NAMES = {channel.letter: channel.name for channel in CHANNELS if channel.letter in tuple(LETTERS)}
+NAMES = tuple('ABCDEFG')
 EFFECTS = np.array([10, 25, 60, 20, 30, -8, -12])
 """Half the effect of each sensor on the reward after a long training; C matters most."""
 
@@ -49,8 +49,8 @@ def simulated(
         }
     )
     return RunTable(
-        'Test campaign', 'bags/test', 'final_average_reward', tuple(NAMES), built, caveats,
-        design, NAMES, curves,
+        'Test campaign', 'bags/test', 'final_average_reward', NAMES, built, caveats,
+        design, default_factors(NAMES), curves,
     )  # fmt: skip
 
 

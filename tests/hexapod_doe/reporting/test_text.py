@@ -94,13 +94,13 @@ def test_a_model_that_predicts_names_its_choice(campaign):
 
 def test_the_chosen_set_is_spelled_out(campaign):
     chosen = text.chosen_standing(campaign)
-    words = text.sensors_of(campaign, chosen)
+    words = text.description(campaign, chosen)
     on = [campaign.design.factor_names[f] for f, level in chosen.levels.items() if level > 0]
     assert 'body orientation' in words
     assert all(name in words for name in on)
     nothing = replace(chosen, levels=dict.fromkeys('ABCDEFG', -1))
-    assert text.sensors_of(campaign, nothing) == 'only what is always observed'
-    assert text.name_of(nothing) == 'no optional sensor'
+    assert text.description(campaign, nothing) == 'only what is always observed'
+    assert text.name_of(campaign, nothing) == 'no optional sensor'
 
 
 def test_the_facts_are_those_of_the_model_that_decides(campaign):

@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Figures of what each sensor does: mean responses with and without it."""
+"""Figures of what each factor does: mean responses at its two levels."""
 
 import numpy as np
 import pandas as pd
@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from hexapod_doe.designs.terms import CONSTANT, is_interaction, order
 from hexapod_doe.fitting.alias_matrix import short_alias
-from hexapod_doe.records.results import Analysis, MainEffect
+from hexapod_doe.records.results import Analysis, DesignSummary, MainEffect
 from hexapod_doe.reporting.figures.chart import Chart
 from hexapod_doe.reporting.figures.parts import (
     canvas,
@@ -23,14 +23,16 @@ from hexapod_doe.reporting.figures.parts import (
 )
 from hexapod_doe.reporting.figures.significance import sizes
 from hexapod_doe.reporting.figures.style import INK, MARKERS, MUTED, SERIES, SURFACE
-from hexapod_doe.reporting.formats import number, signed
+from hexapod_doe.reporting.formats import capitalised, number, signed
+from hexapod_doe.reporting.words import Words, level_text, words
 
 MAX_INTERACTIONS = 6
 """More panels than this are tables, not figures."""
 
 
 def main_effects(analysis: Analysis) -> Chart:
-    """Draw the fitted mean with and without each factor, for every design, with SE bars."""
+    """Draw the fitted mean at both levels of each factor, for every design, with SE bars."""
+    named = words(analysis.design)
     ordered = sorted(analysis.main_effects, key=lambda effect: -abs(effect.effect))
     factors = [effect.factor for effect in ordered]
     rows = [
@@ -51,16 +53,16 @@ def main_effects(analysis: Analysis) -> Chart:
         axes.set_xticks(range(len(factors)), names)
         axes.tick_params(axis='x', labelcolor=INK)
         axes.set_ylabel(unit_label(analysis))
-        _legend(axes, len(several))
+        _legend(axes, len(several), named)
         return figure
 
     return Chart(
         'main_effects',
         _main_effects_title(analysis, ordered[0]),
-        'Each pair joins the fitted mean without a sensor (hollow) to that with it (filled), over '
-        'all combinations of the others; bars are one standard error of each. Sensors are ordered '
-        'by the size of their effect; the dotted line is the mean of all runs. No run is left out '
-        'here.',
+        f'Each pair joins the fitted mean {named.at_low} (hollow) to that {named.at_high} '
+        '(filled), over all combinations of the others; bars are one standard error of each. '
+        f'{capitalised(named.noun)}s are ordered by the size of their effect; the dotted line is '
+        'the mean of all runs. No run is left out here.',
         pd.DataFrame(rows),
         draw,
     )
@@ -78,7 +80,7 @@ def interactions(analysis: Analysis) -> Chart | None:
         columns = 3 if is_wide(width) else 2
         figure, panels = grid(width, len(terms), columns, 1.4, below=0.55, foot=0.3)
         for axes, term in zip(panels, terms, strict=True):
-            _draw_interaction(axes, data[data['term'] == term], term)
+            _draw_interaction(axes, data[data['term'] == term], term, analysis.design)
             axes.set_title(short_alias(aliases.get(term, term)), loc='left')
         figure.supylabel(unit_label(analysis), x=0.01, fontsize=9, color=MUTED)
         return figure
@@ -94,9 +96,8 @@ def interactions(analysis: Analysis) -> Chart | None:
     return Chart(
         'interactions',
         title,
-        'Fitted mean without and with the first sensor, once without (hollow) and once with '
-        '(filled) the second one. Parallel lines mean that the sensors act independently. Each '
-        'panel is named by all terms that it may stand for.',
+        f'{words(analysis.design).interaction} Each panel is named by all terms that it may stand '
+        'for.',
         data,
         draw,
     )
@@ -135,11 +136,11 @@ def _draw_design(
     axes.plot([], [], marker + '-', color=colour, label=design_label(analysis.design))
 
 
-def _legend(axes: Axes, series: int) -> None:
+def _legend(axes: Axes, series: int, named: Words) -> None:
     if series == 1:
         axes.lines[-2].set_label('_')  # one design needs no name: the page has it
         colour, marker = SERIES[0], MARKERS[0]
-        for face, label in ((SURFACE, 'without the sensor'), (colour, 'with it')):
+        for face, label in zip((SURFACE, colour), named.legend, strict=True):
             axes.plot([], [], marker, color=colour, markerfacecolor=face, label=label)
     axes.legend(loc='lower left', bbox_to_anchor=(0, 1), ncols=2, borderaxespad=0, handlelength=1)
 
@@ -156,7 +157,8 @@ def _main_effects_title(analysis: Analysis, largest: MainEffect) -> str:
     if found is None or largest.factor in found.active:
         title = f'{name} moves the response most: {size}'
     else:
-        title = f'No sensor stands out from noise; the largest effect is {name}, {size}'
+        noun = words(analysis.design).noun
+        title = f'No {noun} stands out from noise; the largest effect is {name}, {size}'
     overlapping = sum(
         _bars_overlap(effect, other)
         for compared in analysis.compared
@@ -208,7 +210,7 @@ def _corners(analysis: Analysis, term: str) -> pd.DataFrame:
     )
 
 
-def _draw_interaction(axes: Axes, corners: pd.DataFrame, term: str) -> None:
+def _draw_interaction(axes: Axes, corners: pd.DataFrame, term: str, design: DesignSummary) -> None:
     first, second = term[0], term[1]
     lines = {level: corners[corners['second'] == level].sort_values('first') for level in (-1, 1)}
     ends = {level: float(line['mean'].iloc[-1]) for level, line in lines.items()}
@@ -216,7 +218,7 @@ def _draw_interaction(axes: Axes, corners: pd.DataFrame, term: str) -> None:
         line = lines[level]
         axes.plot(line['first'], line['mean'], 'o-', color=colour, markerfacecolor=face)
         axes.annotate(
-            f'with {second}' if level > 0 else f'no {second}',
+            level_text(design, second, level),
             (float(line['first'].iloc[-1]), ends[level]),
             (5, 4 if ends[level] > ends[-level] else -4),  # apart where the lines meet
             textcoords='offset points',
@@ -224,6 +226,6 @@ def _draw_interaction(axes: Axes, corners: pd.DataFrame, term: str) -> None:
             color=colour,
             fontsize=8.5,
         )
-    axes.set_xticks([-1, 1], [f'no {first}', f'with {first}'])
+    axes.set_xticks([-1, 1], [level_text(design, first, level) for level in (-1, 1)])
     axes.set_xlim(-1.4, 2.1)
     axes.margins(y=0.12)

@@ -15,6 +15,7 @@ from hexapod_doe.reporting.figures.outliers import outliers
 from hexapod_doe.reporting.figures.parts import canvas, failed, grid, is_wide, unit_label
 from hexapod_doe.reporting.figures.style import BLUE, INK, MUTED, ORANGE, SURFACE
 from hexapod_doe.reporting.formats import count, number
+from hexapod_doe.reporting.words import words
 
 MAX_PANELS = 64
 """Learning curves are drawn for at most so many cases, the best ones."""
@@ -84,7 +85,7 @@ def learning_curves(analysis: Analysis) -> Chart | None:
         _curves_title(curves),
         'Thin lines are training runs, the thick line is the mean of the case; a replicate that '
         'ends beyond 1.5 interquartile ranges of the others is named. All panels share their '
-        'axes. The number is the case, the letters are its sensors.'
+        f'axes. The number is the case, the letters are {words(analysis.design).held}.'
         + (f' The {MAX_PANELS} best cases are shown.' if len(cases) == MAX_PANELS else ''),
         data,
         draw,

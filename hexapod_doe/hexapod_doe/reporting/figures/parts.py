@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from hexapod_doe.records.results import Analysis, DesignSummary
 from hexapod_doe.reporting.figures.style import WIDE
+from hexapod_doe.reporting.words import factor_text
 
 
 def canvas(width: float, height: float) -> tuple[Figure, Axes]:
@@ -81,7 +82,7 @@ def design_label(design: DesignSummary) -> str:
 
 def factor_label(design: DesignSummary, factor: str, wrap: int = 0) -> str:
     """Return a factor's letter and name; the name broken into lines of `wrap` characters."""
-    name = design.factor_names.get(factor, '')
+    name = factor_text(design, factor).removeprefix(factor).strip()
     if not name:
         return factor
     return (

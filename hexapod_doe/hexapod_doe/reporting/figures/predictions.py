@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Figures of the predictions for all sensor sets: the best ones, the ranking, the agreement."""
+"""Figures of the predictions for all sets: the best ones, the ranking, the agreement."""
 
 from collections.abc import Sequence
 
@@ -16,6 +16,7 @@ from hexapod_doe.reporting.figures.parts import canvas, design_label, designs, i
 from hexapod_doe.reporting.figures.style import BLUE, GRID, INK, MARKERS, MUTED, SERIES, SURFACE
 from hexapod_doe.reporting.formats import count, number
 from hexapod_doe.reporting.standing import Standing, all_alike, deciding_parts, standings
+from hexapod_doe.reporting.words import Words, words
 
 TOP = 15
 """Sets shown one by one."""
@@ -24,10 +25,10 @@ MAX_BARS = 256
 
 
 def top_sets(analysis: Analysis) -> Chart:
-    """Draw the best sets as rows: which sensors they hold, and what they are predicted to earn."""
+    """Draw the best sets as rows: what they hold, and what they are predicted to earn."""
     ranked = standings(analysis)
     shown = _with_references(ranked)
-    factors = analysis.design.factors
+    factors, named = analysis.design.factors, words(analysis.design)
 
     def draw(width: float) -> Figure:
         wide = is_wide(width)
@@ -36,7 +37,7 @@ def top_sets(analysis: Analysis) -> Chart:
         matrix, axes = figure.subplots(1, 2, sharey=True, width_ratios=share)
         _draw_matrix(matrix, shown, factors)
         _draw_intervals(axes, shown)
-        matrix.set_yticks(range(len(shown)), [_row_name(p, wide) for p in shown])
+        matrix.set_yticks(range(len(shown)), [_row_name(p, wide, named) for p in shown])
         axes.set_xlabel(f'predicted {unit_label(analysis)}')
         return figure
 
@@ -134,7 +135,7 @@ def _basis(analysis: Analysis) -> str:
 
 
 def _with_references(ranked: Sequence[Standing]) -> list[Standing]:
-    """Return the best sets, then the sets of all sensors and of none where they are not in."""
+    """Return the best sets, then the sets of all factors and of none where they are not in."""
     references = (max(ranked, key=lambda s: s.size), min(ranked, key=lambda s: s.size))
     return [*ranked[:TOP], *(s for s in references if s.rank > TOP)]
 
@@ -167,11 +168,11 @@ def _draw_intervals(axes: Axes, shown: Sequence[Standing]) -> None:
     axes.spines['left'].set_visible(False)
 
 
-def _row_name(standing: Standing, wide: bool) -> str:
+def _row_name(standing: Standing, wide: bool, named: Words) -> str:
     if not wide:
         return f'{standing.rank}'
     whole = standing.size == len(standing.levels)
-    name = 'all sensors' if whole else standing.label if standing.size else 'none of them'
+    name = named.whole if whole else standing.label if standing.size else 'none of them'
     return f'{name}  {standing.rank}'
 
 

@@ -1,0 +1,91 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Runs whose factors are keys of the specification: read from bags alone, reported by name."""
+
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+from hexapod_doe.campaigns.row import read_rows
+from hexapod_doe.errors import BagError, TableError
+from hexapod_doe.tables.bag_table import bag_responses, read_bags
+
+from hexapod_doe import analyze, plan
+
+FACTORS = """
+- {name: body orientation, key: observations.C, low: off, high: on, device: IMU with fusion}
+- {name: yaw share, key: task.yaw_share, low: 0, high: 1}
+- {name: learning rate, key: learner.actor.learning_rate, low: 1.0e-4, high: 2.0e-4}
+- {name: hidden units, key: learner.actor.hidden, low: [32, 32], high: [64, 64]}
+"""
+
+
+@pytest.fixture
+def campaign(tmp_path: Path, write_bag) -> Path:
+    """A full factorial of four factors with a bag for each row; the second one (B) matters."""
+    (tmp_path / 'factors.yaml').write_text(FACTORS)
+    out = tmp_path / 'mixed' / 'plan.csv'
+    options = ['--factors', str(tmp_path / 'factors.yaml'), '--design', 'full']
+    plan.main([*options, '--replicates', '2', '--out', str(out)])
+    for number, row in enumerate(read_rows(out)):
+        described = dict(row.metadata) | {'spec': row.spec.to_text()}
+        gain = 10.0 + 2.0 * (row.spec.task.yaw_share == 0.0) + 0.01 * (number * 7 % 11)
+        write_bag(f'mixed/runs/{row.run_id}', samples=0, gain=gain, **described)
+    return out.parent
+
+
+def test_levels_come_from_the_bags_alone(campaign: Path, tmp_path: Path) -> None:
+    (planned,) = read_bags([campaign])
+    shutil.copytree(campaign / 'runs', tmp_path / 'elsewhere')
+    (alone,) = read_bags([tmp_path / 'elsewhere'])
+    assert planned.factors == alone.factors == ('A', 'B', 'C', 'D')
+    assert planned.factor_names['A'] == 'yaw share'
+    assert planned.named == alone.named
+    columns = ['run_id', *alone.factors, 'response']
+    ordered = [t.rows[columns].sort_values('run_id', ignore_index=True) for t in (planned, alone)]
+    assert ordered[0].equals(ordered[1])
+
+
+def test_the_report_names_factors_and_levels(campaign: Path, tmp_path: Path, capsys) -> None:
+    out = tmp_path / 'report'
+    assert analyze.main([str(campaign), '--out', str(out)]) == 0
+    printed = capsys.readouterr().out
+    assert 'body orientation o' in printed.split('choice: ')[1]
+    assert 'yaw share 0' in printed.split('choice: ')[1]
+    page = (out / 'index.html').read_text()
+    for text in ('yaw share 0 → 1', 'body orientation off → on', 'hidden units 32×32 → 64×64'):
+        assert text in page
+    assert 'task.yaw_share' in page
+    assert 'which factors?' in page
+    own = re.sub(r'<svg.*?</svg>', '', page.split('id="runs"')[0], flags=re.S)
+    assert 'sensor' not in own
+    assert 'IMU with fusion' in page  # the one factor with a device, by the letter of its sensor
+    assert 'range finder' not in page
+
+
+def test_a_level_that_its_run_did_not_have_is_no_silent_number(campaign, write_bag) -> None:
+    row = read_rows(campaign / 'plan.csv')[0]
+    other = row.spec.with_value('task.yaw_share', 0.5, 'test')
+    shutil.rmtree(row.bag)
+    described = dict(row.metadata) | {'spec': other.to_text()}
+    write_bag(f'mixed/runs/{row.run_id}', samples=0, **described)
+    with pytest.raises((BagError, TableError), match=r'task\.yaw_share'):
+        read_bags(sorted((campaign / 'runs').iterdir()))
+
+
+def test_runs_of_another_base_are_not_mixed_in(campaign, write_bag) -> None:
+    row = read_rows(campaign / 'plan.csv')[0]
+    other = row.spec.with_value('task.height_weight', 0.7, 'test')
+    shutil.rmtree(row.bag)
+    described = dict(row.metadata) | {'spec': other.to_text()}
+    write_bag(f'mixed/runs/{row.run_id}', samples=0, **described)
+    with pytest.raises(TableError, match=r'not alike .*task\.height_weight 0\.7'):
+        read_bags([campaign])
+
+
+def test_responses_are_by_the_set_of_high_levels(campaign: Path) -> None:
+    found = bag_responses(campaign)
+    assert len(found) == 16
+    assert {'(none)', 'ABCD'} < set(found)
