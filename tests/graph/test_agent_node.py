@@ -17,7 +17,7 @@ from hexapod_agent.learning.training import Trainer
 from hexapod_agent.nodes.agent_node import AgentNode
 from hexapod_agent.specification.observation import ObservationSpec
 from hexapod_agent.specification.run_spec import RunSpec
-from hexapod_agent.train import train_episode
+from hexapod_agent.train import evaluate, train_episode
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import EpisodeResult
@@ -109,6 +109,8 @@ def test_a_seed_gives_the_same_weights_on_the_graph_and_in_the_environment(
     assert alone.summary == trainers[0].summary
     assert alone.summary.metrics['updates'] > 0
     assert response.result.final_average_reward == alone.average_return
+    *_, judged = evaluate(env, alone)
+    assert response.result.evaluation_return == judged.average_return
     on_graph, in_env = (t.state_dict(to_resume=False) for t in (trainers[0], alone))
     assert_same(on_graph, in_env)
 

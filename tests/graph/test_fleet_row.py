@@ -115,9 +115,14 @@ def test_a_fleet_gives_the_results_of_the_graph(on_graph, in_fleet, row) -> None
     ours, theirs = results(row('fleet')), results(row('graph'))
     assert theirs['updates'].iloc[-1] == 20
     pd.testing.assert_frame_equal(ours, theirs, check_exact=True)
-    kept, expected = (read_run(row(name).bag).metadata for name in ('fleet', 'graph'))
+    fleet, worker = (read_run(row(name).bag) for name in ('fleet', 'graph'))
+    kept, expected = fleet.metadata, worker.metadata
     for key in ('run_id', 'observations', 'seed', 'mode', 'episodes', 'spec', 'case', 'status'):
         assert kept[key] == expected[key]
+    assert len(fleet.evaluation) == int(kept['evaluation']) == 2
+    pd.testing.assert_frame_equal(fleet.evaluation, worker.evaluation, check_exact=True)
+    mean = fleet.evaluation['average_return'].iloc[-1]
+    assert float(kept['evaluation_return']) == float(expected['evaluation_return']) == mean
 
 
 def test_either_goes_on_where_the_other_was_cut(on_graph, in_fleet, row, cut) -> None:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from hexapod_agent.learning.player import Player
 from hexapod_agent.learning.run_checkpoint import checkpoint_path
 from hexapod_agent.learning.training import Trainer
 from hexapod_agent.nodes.agent_node import AgentNode
@@ -60,6 +61,8 @@ class Worker:
 
     def __init__(self, graph) -> None:
         self.cut_at = EPISODES
+        self.cut_start = -1
+        """Episode of the evaluation."""
         self.begun: list[int] = []
         graph.add(SimNode(), CpgNode(), RecorderNode(), AgentNode(self._make_trainer))
 
@@ -75,6 +78,18 @@ class Worker:
                 if self.episode == worker.cut_at and outcome.step == 10:
                     raise CutError(f'cut in episode {self.episode}')
                 return super().observe(observation, outcome)
+
+            def evaluator(self) -> Player:
+                player = super().evaluator()
+                begin = player.begin_episode
+
+                def begin_unless_cut(start: int) -> None:
+                    if start == worker.cut_start:
+                        raise CutError(f'cut in start {start}')
+                    begin(start)
+
+                player.begin_episode = begin_unless_cut
+                return player
 
         return Cut(*args)
 
@@ -124,6 +139,23 @@ def test_a_cut_run_repeats_what_followed_its_checkpoint_and_no_more(
     stamps = [stamp for stamp, _ in read_topic(bag, 'joint_states')]
     assert stamps == sorted(stamps)
     assert len(stamps) == len(set(stamps)) == 3 * 21
+
+
+def test_a_run_that_was_cut_amid_its_evaluation_gives_the_same(
+    graph, worker: Worker, goal, tmp_path: Path, undisturbed: pd.DataFrame
+) -> None:
+    worker.cut_start = 1
+    assert 'cut in start 1' in train(graph, goal('cut'))
+    assert not is_complete(tmp_path / 'cut')
+    worker.cut_start = -1
+    assert train(graph, goal('cut')) == ''
+    pd.testing.assert_frame_equal(results(tmp_path / 'cut'), undisturbed, check_exact=True)
+    verify(tmp_path / 'cut')
+    cut, whole = (read_run(tmp_path / name) for name in ('cut', 'whole'))
+    assert cut.metadata['evaluation_return'] == whole.metadata['evaluation_return']
+    evaluations = [run.evaluation.drop(columns='stamp_ns') for run in (cut, whole)]
+    assert len(evaluations[0]) == 2
+    pd.testing.assert_frame_equal(*evaluations, check_exact=True)
 
 
 def test_without_resume_a_run_begins_anew(

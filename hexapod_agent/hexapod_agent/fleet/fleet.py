@@ -82,10 +82,10 @@ class Fleet:
                 seat.attempt(partial(self._begin_episode, seat))
 
     def _begin_episode(self, seat: Seat) -> None:
-        trainer = seat.trainer
-        seed = episode_seed(trainer.seed, trainer.episode)
-        seat.observation, seat.outcome = self._robots.reset(seat.place, trainer.spec, seed)
-        trainer.begin_episode(trainer.episode)
+        run_seed, episode = seat.next_episode
+        seed = episode_seed(run_seed, episode)
+        seat.observation, seat.outcome = self._robots.reset(seat.place, seat.trainer.spec, seed)
+        seat.agent.begin_episode(episode)
 
     def _physics(self, seats: Sequence[Seat]) -> list[Job]:
         return [self.stopwatch.timed('physics', partial(self._advance, seat)) for seat in seats]
@@ -107,7 +107,7 @@ class Fleet:
                 seat.attempt(partial(self._end_episode, seat))
             if seat.fault is not None:
                 seat.run.failed(seat.fault)
-            elif seat.trainer.episode < seat.run.episodes:
+            elif not seat.is_done:
                 continue
             else:
                 seat.run.ended()
@@ -118,7 +118,7 @@ class Fleet:
 
     def _end_episode(self, seat: Seat) -> None:
         """Close one run's episode; its next one, if it has one, is to begin."""
-        if seat.run.saves_next:
+        if seat.player is None and (seat.run.saves_next or seat.is_last):
             self._learners.settle(seat)
-        seat.run.episode_ended(seat.trainer.end_episode(seat.observation, seat.outcome))
+        seat.end_episode()
         seat.waits = True

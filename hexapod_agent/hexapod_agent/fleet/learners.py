@@ -24,7 +24,7 @@ class Learners(Protocol):
         """Take over the networks of a trainer that takes its seat."""
 
     def settle(self, seat: Seat) -> None:
-        """Bring a trainer's own networks up to date, so that it can be saved."""
+        """Bring a trainer's own networks up to date, so that it can be saved or evaluated."""
 
     def act(self, seats: Sequence[Seat], actions: NDArray[np.float32]) -> None:
         """Show each trainer its observation, and write what it does to its row of actions."""
@@ -57,13 +57,13 @@ class SeparateLearners:
         """Let each trainer act by itself."""
 
         def act(seat: Seat) -> None:
-            actions[seat.place] = seat.trainer.observe(seat.observation, seat.outcome)
+            actions[seat.place] = seat.agent.observe(seat.observation, seat.outcome)
 
         self._crew.run(partial(seat.attempt, partial(act, seat)) for seat in seats)
 
     def learn(self, seats: Sequence[Seat]) -> list[Job]:
         """Return one job per trainer."""
-        return [partial(seat.attempt, seat.trainer.learn) for seat in seats]
+        return [partial(seat.attempt, seat.agent.learn) for seat in seats]
 
     def collect(self) -> None:
         """Nothing to wait for: the jobs were all."""

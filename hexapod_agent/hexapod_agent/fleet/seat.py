@@ -8,9 +8,10 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
-from hexapod_sim.task import Outcome
+from hexapod_sim.task import EVALUATION_SEED, Outcome
 from numpy.typing import NDArray
 
+from hexapod_agent.learning.player import Agent, Player
 from hexapod_agent.learning.summary import EpisodeSummary
 from hexapod_agent.learning.training import Trainer, TrainingDivergedError
 from hexapod_agent.specification.observation import ObservationError
@@ -31,6 +32,9 @@ class Run(Protocol):
     def episode_ended(self, summary: EpisodeSummary) -> None:
         """Take note of an episode."""
 
+    def evaluated(self, summary: EpisodeSummary) -> None:
+        """Take note of an episode of the evaluation that follows the last one."""
+
     def ended(self) -> None:
         """Take note that the last episode is over."""
 
@@ -49,6 +53,8 @@ class Seat:
         outcome: What its last step earned; likewise.
         waits: Whether its next episode has not begun yet.
         fault: Why the run cannot go on; no job is attempted for it any more.
+        player: Plays what the run has learned, once it is being evaluated.
+        evaluated: Complete episodes of the evaluation.
     """
 
     place: int
@@ -57,11 +63,47 @@ class Seat:
     outcome: Outcome = field(init=False)
     waits: bool = True
     fault: Exception | None = None
+    player: Player | None = None
+    evaluated: int = 0
 
     @property
     def trainer(self) -> Trainer:
         """The run's learner and its bookkeeping."""
         return self.run.trainer
+
+    @property
+    def agent(self) -> Agent:
+        """Who drives the robot."""
+        return self.player or self.trainer
+
+    @property
+    def next_episode(self) -> tuple[int, int]:
+        """Seed of the run whose start the next episode has, and its number there."""
+        if self.player is not None:
+            return EVALUATION_SEED, self.evaluated
+        return self.trainer.seed, self.trainer.episode
+
+    @property
+    def is_last(self) -> bool:
+        """Whether the episode of the training that is under way is its last one."""
+        return self.trainer.episode + 1 >= self.run.episodes
+
+    @property
+    def is_done(self) -> bool:
+        """Whether there is no further episode."""
+        evaluation = self.trainer.config.training.evaluation
+        return self.trainer.episode >= self.run.episodes and self.evaluated >= evaluation
+
+    def end_episode(self) -> None:
+        """Close an episode, of the training or of the evaluation that follows it."""
+        summary = self.agent.end_episode(self.observation, self.outcome)
+        if self.player is not None:
+            self.evaluated += 1
+            self.run.evaluated(summary)
+            return
+        self.run.episode_ended(summary)
+        if self.trainer.episode >= self.run.episodes:
+            self.player = self.trainer.evaluator()
 
     @property
     def steps(self) -> bool:

@@ -81,7 +81,13 @@ class StackedLearners:
         self._stack.take(seat.place, seat.trainer.agent)
 
     def act(self, seats: Sequence[Seat], actions: NDArray[np.float32]) -> None:
-        """Compute all policies in one pass, and let each trainer add its noise."""
+        """Compute all policies in one pass, and let each trainer add its noise.
+
+        A run that is being evaluated plays its own networks, as it does alone.
+        """
+        for seat in (each for each in seats if each.player is not None):
+            actions[seat.place] = seat.agent.observe(seat.observation, seat.outcome)
+        seats = [seat for seat in seats if seat.player is None]
         for seat in seats:
             seat.attempt(partial(seat.trainer.store, seat.observation, seat.outcome))
             row = self._observations[seat.place, : seat.observation.size]
@@ -96,7 +102,8 @@ class StackedLearners:
 
     def learn(self, seats: Sequence[Seat]) -> list[Job]:
         """Begin the gradient steps that are due; a device is still at them at the return."""
-        due = [seat for seat in seats if seat.fault is None and seat.trainer.due]
+        learning = (seat for seat in seats if seat.fault is None and seat.player is None)
+        due = [seat for seat in learning if seat.trainer.due]
         if not due:
             return []
         places = tuple(seat.place for seat in due)

@@ -30,7 +30,7 @@ from hexapod_agent.learning.checkpoint import CheckpointError
 from hexapod_agent.learning.player import Agent, Player
 from hexapod_agent.learning.training import Trainer
 from hexapod_agent.nodes.action_names import PLAY_RUN, TRAIN_RUN
-from hexapod_agent.nodes.graph_run import GraphRun, MakeTrainer, RunContext
+from hexapod_agent.nodes.graph_run import CanceledError, GraphRun, MakeTrainer, RunContext
 from hexapod_agent.nodes.peers import Peers
 from hexapod_agent.specification.observation import parse_observations
 from hexapod_agent.specification.run_spec import ConfigError, RunSpec
@@ -70,6 +70,7 @@ class AgentNode(Node):
             self,
             LockStepPublisher(self, CpgCommand, 'cpg/command'),
             self.create_publisher(EpisodeResult, 'episode_result', LOCK_STEP),
+            self.create_publisher(EpisodeResult, 'evaluation_result', LOCK_STEP),
             Peers(self, timeout_s),
             timeout_s,
             make_trainer,
@@ -116,6 +117,9 @@ class AgentNode(Node):
             config, agent = self._loaded(goal)
             self._run = GraphRun(self._run_context, goal_handle, config, agent)
             return await self._run.execute()
+        except CanceledError as canceled:
+            goal_handle.canceled()
+            return TrainRun.Result(message=str(canceled), episodes=canceled.episodes)
         except Exception as error:
             self._last_error = f'run {goal.run_id}: {error}'
             self.get_logger().error(self._last_error)
@@ -175,7 +179,7 @@ class AgentNode(Node):
 
     def _health(self) -> Health:
         if self._run is not None:
-            return DiagnosticStatus.OK, 'training', self._run.progress()
+            return DiagnosticStatus.OK, self._run.phase, self._run.progress()
         if self._last_error:
             return DiagnosticStatus.ERROR, self._last_error, {}
         return DiagnosticStatus.OK, 'waiting for a run', {}

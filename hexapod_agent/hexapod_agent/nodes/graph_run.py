@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import functools
-from array import array
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -16,19 +16,20 @@ from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import EpisodeResult
 from hexapod_node.coroutines import until_true
 from hexapod_node.matching import count_subscriber_nodes, subscribed_topics, unmatched
-from hexapod_node.stamps import time_message
 from hexapod_node.timers import call_every
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from hexapod_sim.sensor_table import CHANNELS
-from hexapod_sim.task import episode_seed
+from hexapod_sim.task import EVALUATION_SEED, episode_seed
 
 from hexapod_agent.learning import run_checkpoint
 from hexapod_agent.learning.checkpoint import save
 from hexapod_agent.learning.event_log import EventLog
 from hexapod_agent.learning.player import Agent
 from hexapod_agent.learning.provenance import provenance
+from hexapod_agent.learning.summary import EpisodeSummary
 from hexapod_agent.learning.training import Trainer
 from hexapod_agent.nodes.control_loop import OUTCOME, ControlLoop
+from hexapod_agent.nodes.messages import summary_to_message
 from hexapod_agent.nodes.peers import PeerError, Peers
 from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_sim import quality
@@ -47,6 +48,18 @@ _PROTOCOL_TOPICS = (OUTCOME, 'odom', 'cpg/command', 'joint_trajectory', 'clock')
 _SENSOR_TOPICS = tuple(topic for channel in CHANNELS for topic in channel.topics)
 
 
+class CanceledError(RuntimeError):
+    """Who gave the goal has taken it back.
+
+    Attributes:
+        episodes: That are complete.
+    """
+
+    def __init__(self, episodes: int) -> None:
+        super().__init__('canceled')
+        self.episodes = episodes
+
+
 @dataclass(frozen=True)
 class RunContext:
     """What a run uses of the node that was asked for it.
@@ -55,6 +68,7 @@ class RunContext:
         node: Subscribes, and names topics.
         commands: Publishes `cpg/command`.
         results: Publishes `episode_result`.
+        evaluation: Publishes `evaluation_result`.
         peers: Services of the sim, the pattern generator and the recorder.
         timeout_s: Longest wait for a service or a sample.
         make_trainer: Makes what learns, of a specification and a seed.
@@ -63,13 +77,18 @@ class RunContext:
     node: Node
     commands: LockStepPublisher
     results: Publisher
+    evaluation: Publisher
     peers: Peers
     timeout_s: float
     make_trainer: MakeTrainer
 
 
 class GraphRun:
-    """A run of the action `train_run`, from its first subscription to its closed bag."""
+    """A run of the action `train_run`, from its first subscription to its closed bag.
+
+    Attributes:
+        phase: What is done at present: 'training', or 'evaluating' at the end.
+    """
 
     def __init__(
         self,
@@ -86,6 +105,8 @@ class GraphRun:
         self._events: EventLog | None = None
         self._loop = ControlLoop(context.node, context.commands, config, context.timeout_s)
         self._episode = 0
+        self._evaluation = 0 if self._goal.checkpoint else config.training.evaluation
+        self.phase = 'training'
         self._last_ns = 0
         """End of the episodes that were carried over; simulated time goes on from there."""
         self._life = call_every(context.node, _LIFE_S, self._give_sign_of_life)
@@ -103,7 +124,11 @@ class GraphRun:
         return {'run_id': self._goal.run_id, 'episode': self._episode, **counts}
 
     async def execute(self) -> TrainRun.Result:
-        """Run every episode of the goal, then close the bag and save an agent that has learned."""
+        """Run every episode of the goal, then close the bag and save an agent that has learned.
+
+        Raises:
+            CanceledError: The goal was taken back.
+        """
         peers, goal = self._context.peers, self._goal
         await peers.configure('sim', 'task', asdict(self._config.task))
         qualities = {'qualities': quality.to_text(self._config.sensors)}
@@ -111,23 +136,23 @@ class GraphRun:
         await peers.configure('cpg', 'cpg', asdict(self._config.cpg.hopf))
         first = await self._open_bag() if goal.bag else 0
         for self._episode in range(first, goal.episodes):
-            if self._goal_handle.is_cancel_requested:
-                self._goal_handle.canceled()
-                return TrainRun.Result(message='canceled', episodes=self._episode)
+            self._check_wanted(self._episode)
             await self._run_episode()
             await self._keep()
+        found = await self._evaluate()
         checkpoint, bag = goal.checkpoint, ''
         if goal.bag:
             if isinstance(self._agent, Trainer):
                 checkpoint = f'{goal.bag}.pt'
                 save(checkpoint, self._agent, to_resume=False)
             # A name, not a path: bags are moved, and their checkpoints with them.
-            found = {'checkpoint': Path(checkpoint).name}
+            found |= {'checkpoint': Path(checkpoint).name}
             bag = await peers.finish_recording(goal.episodes, found)
             run_checkpoint.forget(goal.bag)
         self._goal_handle.succeed()
         return TrainRun.Result(
             final_average_reward=self._agent.summary.average_return,
+            evaluation_return=float(found.get('evaluation_return', math.nan)),
             episodes=self._episode + 1,
             checkpoint=checkpoint,
             bag=bag,
@@ -159,6 +184,23 @@ class GraphRun:
             await self._context.peers.secure_recording(done)
             run_checkpoint.keep(self._goal.bag, self._agent)
 
+    def _check_wanted(self, episodes: int) -> None:
+        """Raise `CanceledError` if who gave the goal has taken it back."""
+        if self._goal_handle.is_cancel_requested:
+            raise CanceledError(episodes)
+
+    async def _evaluate(self) -> dict[str, str]:
+        """Have the run evaluated, if it is a training; return what its bag says of it."""
+        if not self._evaluation or not isinstance(self._agent, Trainer):
+            return {}
+        player = self._agent.evaluator()
+        self.phase = 'evaluating'
+        for start in range(self._evaluation):
+            self._check_wanted(self._episode + 1)
+            last_ns = await self._play(player, EVALUATION_SEED, start, sampled=False)
+            self._context.evaluation.publish(self._result(player.summary, last_ns))
+        return {'evaluation_return': repr(player.summary.average_return)}
+
     async def _run_episode(self) -> None:
         """Play one episode, and record all of it if it is a sampled one."""
         peers, episode = self._context.peers, self._episode
@@ -166,16 +208,21 @@ class GraphRun:
         sampled = bool(self._goal.bag) and every > 0 and (episode + 1) % every == 0
         if sampled:
             await peers.record_episode(episode, enable=True)
-        self._loop.make_ready()
-        self._agent.begin_episode(episode)
-        listeners = functools.partial(self._listeners, sampled)
-        await self._until_heard(listeners)
-        seed = episode_seed(self._goal.seed, episode)
-        start_ns = await peers.begin_episode(seed, listeners, self._last_ns + CONTROL_PERIOD_NS)
-        last_ns = await self._loop.run_episode(self._agent, start_ns)
+        last_ns = await self._play(self._agent, self._goal.seed, episode, sampled)
         if sampled:
             await peers.record_episode(episode, enable=False, last_ns=last_ns)
         self._report(last_ns)
+
+    async def _play(self, agent: Agent, seed: int, episode: int, sampled: bool) -> int:
+        """Let an agent drive one episode; return the stamp of its last sample, ns."""
+        self._loop.make_ready()
+        agent.begin_episode(episode)
+        listeners = functools.partial(self._listeners, sampled)
+        await self._until_heard(listeners)
+        start_ns = await self._context.peers.begin_episode(
+            episode_seed(seed, episode), listeners, self._last_ns + CONTROL_PERIOD_NS
+        )
+        return await self._loop.run_episode(agent, start_ns)
 
     def _listeners(self, sampled: bool) -> dict[str, int]:
         """Return how many subscriptions each topic must have before the episode begins."""
@@ -183,7 +230,7 @@ class GraphRun:
         listeners = {resolve('joint_trajectory'): 1, resolve('cpg/command'): 1}
         listeners |= dict.fromkeys(self._loop.topics, 1)
         if self._goal.bag:
-            listeners[resolve('episode_result')] = 1
+            listeners |= {resolve('episode_result'): 1, resolve('evaluation_result'): 1}
         if sampled:
             for topic in self._recorded_topics():
                 listeners[topic] = listeners.get(topic, 0) + 1
@@ -198,7 +245,8 @@ class GraphRun:
         context = self._context
 
         def reason() -> str:
-            return unmatched([context.commands, context.results], listeners())
+            results = context.results, context.evaluation
+            return unmatched([context.commands, *results], listeners())
 
         if not await until_true(self._node, lambda: not reason(), context.timeout_s):
             raise PeerError(f'{reason()} after {context.timeout_s:g} s, expected a running node')
@@ -217,6 +265,7 @@ class GraphRun:
             'mode': 'play' if self._goal.checkpoint else 'train',
             'episodes': str(self._goal.episodes),
             'window': str(self._config.training.window),
+            'evaluation': str(self._evaluation),
             'spec': self._config.to_text(),
             'subscriptions': '\n'.join(subscribed),
             **provenance(),
@@ -227,22 +276,7 @@ class GraphRun:
         summary = self._agent.summary
         if self._events is not None:
             self._events.add(summary)
-        result = EpisodeResult(
-            run_id=self._goal.run_id,
-            episode=self._episode,
-            steps=summary.steps,
-            episode_return=summary.episode_return,
-            average_return=summary.average_return,
-            term_names=list(summary.terms),
-            term_values=array('d', summary.terms.values()),
-            metric_names=list(summary.metrics),
-            metric_values=array('d', summary.metrics.values()),
-            terminated=summary.terminated,
-            cause=summary.cause,
-            **vars(self._loop.counts),
-        )
-        result.header.stamp = time_message(last_ns)
-        self._context.results.publish(result)
+        self._context.results.publish(self._result(summary, last_ns))
         self._goal_handle.publish_feedback(
             TrainRun.Feedback(
                 episode=self._episode,
@@ -252,6 +286,9 @@ class GraphRun:
                 periods=self._loop.periods,
             )
         )
+
+    def _result(self, summary: EpisodeSummary, last_ns: int) -> EpisodeResult:
+        return summary_to_message(self._goal.run_id, summary, self._loop.counts, last_ns)
 
     def _give_sign_of_life(self) -> None:
         """Tell whoever gave the goal that the run goes on."""

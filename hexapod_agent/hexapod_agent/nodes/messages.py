@@ -1,19 +1,26 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Messages of the sensor topics as what an agent observes."""
+"""Messages as what an agent observes, and what it reports as messages."""
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from hexapod_interfaces.msg import StepOutcome
+from hexapod_interfaces.msg import EpisodeResult, StepOutcome
+from hexapod_node.stamps import time_message
 from hexapod_sim.channel import Channel, Field, Numbers
 from hexapod_sim.joint_names import by_joint
 from hexapod_sim.message_fields import read
 from hexapod_sim.task import Outcome
+
+if TYPE_CHECKING:
+    from hexapod_node.stamp_gate import LockStepCounts
+
+    from hexapod_agent.learning.summary import EpisodeSummary
 
 
 def decode(channel: Channel, messages: Mapping[str, Any]) -> dict[str, Numbers]:
@@ -44,6 +51,28 @@ def outcome_from_message(message: StepOutcome) -> Outcome:
         truncated=message.truncated,
         cause=message.cause,
     )
+
+
+def summary_to_message(
+    run_id: str, summary: EpisodeSummary, counts: LockStepCounts, stamp_ns: int
+) -> EpisodeResult:
+    """Return the result of an episode of a run, with the stamp of its last sample."""
+    result = EpisodeResult(
+        run_id=run_id,
+        episode=summary.episode,
+        steps=summary.steps,
+        episode_return=summary.episode_return,
+        average_return=summary.average_return,
+        term_names=list(summary.terms),
+        term_values=array('d', summary.terms.values()),
+        metric_names=list(summary.metrics),
+        metric_values=array('d', summary.metrics.values()),
+        terminated=summary.terminated,
+        cause=summary.cause,
+        **vars(counts),
+    )
+    result.header.stamp = time_message(stamp_ns)
+    return result
 
 
 def _numbers(channel: Channel, topic: str, field: Field, message: Any) -> Numbers:

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import AbstractContextManager
 from functools import cached_property
 from pathlib import Path
@@ -24,7 +24,7 @@ from hexapod_doe.bags.mcap_file import (
 from hexapod_doe.bags.metadata import BagMetadata, bare_metadata, read_metadata
 from hexapod_doe.bags.opening import FileOpener
 from hexapod_doe.bags.rosbag2 import METADATA_FILE, OfferedQos
-from hexapod_doe.bags.run_bag import RUN_RECORD
+from hexapod_doe.bags.run_bag import EPISODE_RESULT, RUN_RECORD, is_evaluation
 from hexapod_doe.errors import BagError
 
 
@@ -164,13 +164,26 @@ class BagFile:
             )
         return found[0]
 
-    def topic_of_type(self, type_name: str) -> str:
-        """Return the one topic of a type.
+    def result_topic(self) -> str:
+        """Return the topic of the results of a run's own episodes.
 
         Raises:
             BagError: none, or several.
         """
-        found = [topic for topic, name in self.types.items() if name == type_name]
+        return self.topic_of_type(EPISODE_RESULT, is_evaluation)
+
+    def evaluation_topics(self) -> list[str]:
+        """Return the topic of the results of a run's evaluation, if it has one."""
+        own = [topic for topic, name in self.types.items() if name == EPISODE_RESULT]
+        return [topic for topic in own if is_evaluation(topic)]
+
+    def topic_of_type(self, type_name: str, but: Callable[[str], bool] = lambda _: False) -> str:
+        """Return the one topic of a type, but for those that do not count.
+
+        Raises:
+            BagError: none, or several.
+        """
+        found = [t for t, name in self.types.items() if name == type_name and not but(t)]
         if len(found) != 1:
             names = f' ({", ".join(sorted(found))})' if found else ''
             raise BagError(

@@ -10,7 +10,7 @@ from pathlib import Path
 from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.bags.location import bag_folders, user_path
 from hexapod_doe.bags.mcap_file import is_mcap
-from hexapod_doe.bags.run_bag import COMPLETE, DIGEST, EPISODE_RESULT
+from hexapod_doe.bags.run_bag import COMPLETE, DIGEST, evaluation_of
 from hexapod_doe.bags.verify import check_bytes
 from hexapod_doe.errors import BagError, UnfinishedError
 
@@ -37,12 +37,15 @@ def sound_metadata(bag: str | Path) -> dict[str, str]:
     """
     file = BagFile(Path(bag))
     metadata = file.run_metadata()
-    recorded = file.counts[file.topic_of_type(EPISODE_RESULT)]
+    recorded = file.counts[file.result_topic()]
     if metadata.get('status') != COMPLETE or str(recorded) != metadata.get('episodes'):
         raise UnfinishedError(
             f'bag {bag}: {recorded} episode results, status {metadata.get("status")!r}, expected '
             f'{metadata.get("episodes")} and {COMPLETE!r}'
         )
+    evaluated, due = sum(file.counts[t] for t in file.evaluation_topics()), evaluation_of(metadata)
+    if evaluated != due:
+        raise UnfinishedError(f'bag {bag}: {evaluated} results of its evaluation, expected {due}')
     check_bytes(file, metadata.get(DIGEST))
     return metadata
 

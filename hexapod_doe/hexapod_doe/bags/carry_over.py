@@ -21,8 +21,9 @@ from mcap_ros2.decoder import DecoderFactory
 from hexapod_doe.bags.cuts import cuts_of
 from hexapod_doe.bags.recording import Recording
 from hexapod_doe.bags.rosbag2 import Topic
-from hexapod_doe.bags.run_bag import EPISODE_RESULT, RESUMED
+from hexapod_doe.bags.run_bag import EPISODE_RESULT, RESUMED, is_evaluation
 from hexapod_doe.bags.salvage import topic_of, whole_records
+from hexapod_doe.bags.schema import definition
 from hexapod_doe.errors import BagError
 
 
@@ -80,10 +81,16 @@ def open_recording(
 
 
 def find_cut(bag: Path, run_id: str, episodes: int) -> Path | None:
-    """Return the newest `<bag>.cut_<n>` that holds the first so many episodes of a run, if any."""
+    """Return the newest `<bag>.cut_<n>` that holds the first so many episodes of a run, if any.
+
+    One of another version, whose messages have other fields, cannot go on: a topic of a bag has
+    one definition.
+    """
     for cut in cuts_of(bag):
-        found = [e.result for e in islice(cut_episodes(cut / f'{bag.name}_0.mcap'), episodes)]
-        numbers = [result.episode for result in found if result.run_id == run_id]
+        found = list(islice(cut_episodes(cut / f'{bag.name}_0.mcap'), episodes))
+        numbers = [e.result.episode for e in found if e.result.run_id == run_id]
+        if any(e.topic.definition != definition(EPISODE_RESULT) for e in found):
+            continue
         if len(numbers) == episodes and numbers == list(range(len(numbers))):
             return cut
     return None
@@ -160,6 +167,8 @@ class _EpisodeReader:
     def _take_message(self, message: Message) -> CutEpisode | None:
         channel = self._channels[message.channel_id]
         schema = self._schemas[channel.schema_id]
+        if is_evaluation(channel.topic):  # it follows the last episode, and is begun again
+            return None
         if schema.name != EPISODE_RESULT:
             self._samples.append((channel.topic, message.data))
             return None

@@ -19,7 +19,7 @@ from hexapod_doe.bags.cdr import stamp_ns
 from hexapod_doe.bags.completeness import EpisodeTally, describe
 from hexapod_doe.bags.cuts import forget_cuts
 from hexapod_doe.bags.rosbag2 import Topic
-from hexapod_doe.bags.run_bag import COMPLETE, RECORDING
+from hexapod_doe.bags.run_bag import COMPLETE, RECORDING, evaluation_of, is_evaluation
 from hexapod_doe.bags.schema import is_stamped
 from hexapod_doe.errors import BagError
 
@@ -30,6 +30,7 @@ class Recording:
     Attributes:
         run_id: of the run; results of other runs are not its own.
         results: episodes whose result is in the bag.
+        evaluated: the same of the run's evaluation.
         incomplete: one line for each fault found in a sampled episode.
     """
 
@@ -41,7 +42,7 @@ class Recording:
         Args:
             run_id: of the run.
             bag: directory that the bag will have when it is complete.
-            metadata: stored in the bag at once.
+            metadata: stored in the bag at once; it says how long the run's evaluation is.
             period_ns: control period; 0 where samples keep no common grid.
 
         Raises:
@@ -49,6 +50,8 @@ class Recording:
         """
         self.run_id = run_id
         self.results: set[int] = set()
+        self.evaluated: set[int] = set()
+        self._evaluation = range(evaluation_of(metadata))
         self.incomplete: list[str] = []
         self._whole = 0
         """Every episode before this one has its result."""
@@ -75,7 +78,7 @@ class Recording:
         """Store the result of an episode and make the bag safe up to here.
 
         Args:
-            topic: that it came on.
+            topic: that it came on, which tells whether it is of the run's evaluation.
             data: the message, serialised.
             episode: its number.
             steps: control periods that it lasted.
@@ -87,15 +90,17 @@ class Recording:
             BagError: the disk refuses.
             ValueError: the message has no stamp that a bag can hold.
         """
-        if episode in self.results:
+        judged = is_evaluation(topic.name)
+        had = self.evaluated if judged else self.results
+        if episode in had:
             return False
         time_ns = _loggable_ns(data)
-        self.results.add(episode)
+        had.add(episode)
         self._writer.add_topic(topic)
         self._writer.write(topic.name, data, time_ns)
         self._writer.flush()
         periods = self._sampled.get(episode, steps)
-        if self._period_ns and periods != steps:
+        if self._period_ns and periods != steps and not judged:
             self.incomplete.append(f'episode {episode}: {periods} of {steps} periods recorded')
         return True
 
@@ -168,6 +173,20 @@ class Recording:
             self._whole += 1
         return self._whole if self._whole < episodes else None
 
+    def lacking(self, episodes: int) -> str:
+        """Return in words what results a run of so many episodes lacks; '' if it has all."""
+        first = self.first_lacking(episodes)
+        if first is not None:
+            found = sum(episode < episodes for episode in self.results)
+            return (
+                f'{found} of {episodes} episode results recorded, episode {first} is the first to '
+                'lack'
+            )
+        found = len(self.evaluated.intersection(self._evaluation))
+        if found < len(self._evaluation):
+            return f'{found} of {len(self._evaluation)} results of its evaluation recorded'
+        return ''
+
     def finish(self, episodes: int, metadata: Mapping[str, str]) -> Path:
         """Close the bag and return it.
 
@@ -175,14 +194,8 @@ class Recording:
             BagError: an episode lacks its result, so the bag keeps its unfinished name; or the
                 disk refuses.
         """
-        lacking = self.first_lacking(episodes)
-        if lacking is not None:
-            found = sum(episode < episodes for episode in self.results)
-            raise BagError(
-                f'run {self.run_id}: {found} of {episodes} episode results '
-                f'recorded, episode {lacking} is the first to lack; '
-                f'the bag stays {self.abandon()}'
-            )
+        if lacking := self.lacking(episodes):
+            raise BagError(f'run {self.run_id}: {lacking}; the bag stays {self.abandon()}')
         self._note(metadata, COMPLETE, episodes)
         bag = self._writer.close()
         forget_cuts(bag, self._writer.metadata, closed=True)

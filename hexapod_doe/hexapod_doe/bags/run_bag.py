@@ -3,10 +3,14 @@
 
 """What the bag of a run says in terms of its own, beyond those of rosbag2."""
 
+from collections.abc import Mapping
+
 RUN_RECORD = 'hexapod_run'
 """Name of the MCAP metadata records that tell which run it is; what is written last holds."""
 EPISODE_RESULT = 'hexapod_interfaces/msg/EpisodeResult'
-"""Type of the one topic that every run has."""
+"""Type of the topic that every run has, and of the one of its evaluation."""
+RESULT_TOPIC, EVALUATION_TOPIC = 'episode_result', 'evaluation_result'
+"""Names of the two, below the worker's."""
 
 # Values of the metadata key `status`.
 RECORDING = 'recording'
@@ -18,5 +22,17 @@ SALVAGED = 'salvaged'
 
 DIGEST = 'digest'
 """Metadata key of the fingerprint of all messages, see `digest`."""
+EVALUATION, EVALUATION_RETURN = 'evaluation', 'evaluation_return'
+"""Metadata keys: how many episodes of an evaluation a run has, and their mean return."""
 RESUMED = 'resumed'
 """Metadata key of the number of episodes that came from an earlier recording that was cut."""
+
+
+def evaluation_of(metadata: Mapping[str, str]) -> int:
+    """Return how many episodes a run's evaluation has; bags of before had none."""
+    return int(metadata.get(EVALUATION, '0'))
+
+
+def is_evaluation(topic: str) -> bool:
+    """Whether results on a topic are those of evaluations."""
+    return topic.rsplit('/', 1)[-1] == EVALUATION_TOPIC

@@ -19,6 +19,8 @@ from typing import Any
 import yaml
 from hexapod_agent.specification.run_spec import ConfigError, RunSpec
 
+from hexapod_doe.bags.run_bag import EVALUATION
+
 CONFIG = 'config'  # where a bag's specification stood before it had the sensors in it
 SPEC = 'spec'
 EPISODES = 'episodes'
@@ -27,9 +29,11 @@ _VERSION = 'version.'
 _COMPARED_APART = (
     'config.observations.',
     'config.training.episodes',
+    'config.training.evaluation',
     'config.training.checkpoint_every',
 )
-"""Sensors and length are compared as such; a run gives the same wherever its checkpoints are."""
+"""Sensors, length and evaluation are compared as such; a run gives the same wherever its
+checkpoints are."""
 _NAMED_KEYS, _NAMED_RUNS = 3, 8
 """How many of them a message names."""
 
@@ -45,8 +49,11 @@ def run_identity(metadata: Mapping[str, str]) -> dict[str, str]:
 
 
 def settings(metadata: Mapping[str, str]) -> dict[str, str]:
-    """Return what all runs of an experiment share: length, and each value of their config."""
-    found = {EPISODES: metadata[EPISODES]} if EPISODES in metadata else {}
+    """Return what all runs of an experiment share: length, and each value of their config.
+
+    Bags of before do not state that they have no evaluation: the response tells them apart.
+    """
+    found = {key: metadata[key] for key in (EPISODES, EVALUATION) if key in metadata}
     text = metadata.get(SPEC, metadata.get(CONFIG))
     return found if text is None else found | dict(_flat_spec(text))
 

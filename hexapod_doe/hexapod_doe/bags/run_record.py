@@ -5,8 +5,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,6 @@ from hexapod_agent.learning import metrics
 
 from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.bags.bag_state import find_bags, is_complete
-from hexapod_doe.bags.run_bag import EPISODE_RESULT
 from hexapod_doe.errors import BagError
 
 __all__ = ['RunRecord', 'find_bags', 'is_complete', 'read_run', 'read_topic']
@@ -44,6 +43,8 @@ class RunRecord:
     episodes: pd.DataFrame
     """A row per episode, by its number: the fields of EpisodeResult, reward terms as `term_*`,
     and the learner's metrics by their names."""
+    evaluation: pd.DataFrame = field(default_factory=pd.DataFrame)
+    """The same of the evaluation at the end; empty where there was none."""
 
 
 def read_run(bag: str | Path) -> RunRecord:
@@ -54,12 +55,11 @@ def read_run(bag: str | Path) -> RunRecord:
     """
     file = BagFile(Path(bag))
     metadata = file.run_metadata()
-    results = [decoded for _, decoded in file.decoded(file.topic_of_type(EPISODE_RESULT))]
-    if not results:
+    episodes = _episodes(file, [file.result_topic()])
+    if episodes.empty:
         raise BagError(f'bag {bag}: empty, expected at least one episode result')
-    episodes = pd.DataFrame([_episode_row(result) for result in results])
-    episodes = episodes.drop_duplicates('episode').set_index('episode').sort_index()
-    return RunRecord(metadata['run_id'], metadata, episodes)
+    evaluation = _episodes(file, file.evaluation_topics())
+    return RunRecord(metadata['run_id'], metadata, episodes, evaluation)
 
 
 def read_topic(bag: str | Path, topic: str, kind: str = '') -> Iterator[tuple[int, Any]]:
@@ -75,6 +75,14 @@ def read_topic(bag: str | Path, topic: str, kind: str = '') -> Iterator[tuple[in
     """
     file = BagFile(Path(bag))
     yield from file.decoded(file.topic(topic, kind))
+
+
+def _episodes(file: BagFile, topics: Iterable[str]) -> pd.DataFrame:
+    results = [result for topic in topics for _, result in file.decoded(topic)]
+    if not results:
+        return pd.DataFrame()
+    episodes = pd.DataFrame([_episode_row(result) for result in results])
+    return episodes.drop_duplicates('episode').set_index('episode').sort_index()
 
 
 def _episode_row(result: Any) -> dict[str, Any]:

@@ -21,7 +21,7 @@ from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.bags.digest import Digest
 from hexapod_doe.bags.metadata import YAML_LOADER
 from hexapod_doe.bags.rosbag2 import METADATA_FILE, ROOT_KEY
-from hexapod_doe.bags.run_bag import DIGEST, EPISODE_RESULT
+from hexapod_doe.bags.run_bag import DIGEST, evaluation_of
 from hexapod_doe.errors import BagError
 
 _FOOTER = struct.Struct('<QQI')
@@ -40,7 +40,8 @@ def verify(bag: str | Path) -> None:
     file = BagFile(bag)
     metadata = file.run_metadata()
     check_messages(file, metadata.get(DIGEST))
-    _check_episodes(file, int(metadata['episodes']))
+    _check_episodes(file, [file.result_topic()], int(metadata['episodes']))
+    _check_episodes(file, file.evaluation_topics(), evaluation_of(metadata))
     check_bytes(file, metadata.get(DIGEST))
 
 
@@ -124,8 +125,7 @@ def _check_copy(file: BagFile, records: Iterable[McapRecord]) -> None:
         )
 
 
-def _check_episodes(file: BagFile, episodes: int) -> None:
-    topics = [topic for topic, name in file.types.items() if name == EPISODE_RESULT]
+def _check_episodes(file: BagFile, topics: Iterable[str], episodes: int) -> None:
     numbers = sorted(result.episode for topic in topics for _, result in file.decoded(topic))
     if numbers != list(range(episodes)):
         odd = next((n for n, found in enumerate(numbers) if n != found), len(numbers))

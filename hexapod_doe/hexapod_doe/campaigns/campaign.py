@@ -13,6 +13,7 @@ from pathlib import Path
 
 from hexapod_agent.specification.run_spec import RunSpec
 
+from hexapod_doe.bags.run_bag import EVALUATION
 from hexapod_doe.bags.run_identity import settings
 from hexapod_doe.campaigns.row import RUNS_FOLDER, Row, read_rows
 from hexapod_doe.errors import CampaignError
@@ -57,7 +58,8 @@ class RunSettings:
 
 def shared_settings(config: RunSpec, episodes: int) -> dict[str, str]:
     """Return what the bag of each run will say of its length and configuration."""
-    return settings({'episodes': str(episodes), 'spec': config.to_text()})
+    evaluation = str(config.training.evaluation)
+    return settings({'episodes': str(episodes), EVALUATION: evaluation, 'spec': config.to_text()})
 
 
 @dataclass

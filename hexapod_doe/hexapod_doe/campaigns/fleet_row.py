@@ -21,12 +21,22 @@ from hexapod_doe.bags.carry_over import carry_over, find_cut
 from hexapod_doe.bags.episode_result import serialise
 from hexapod_doe.bags.recording import Recording
 from hexapod_doe.bags.rosbag2 import OfferedQos, Topic
-from hexapod_doe.bags.run_bag import EPISODE_RESULT, RESUMED
+from hexapod_doe.bags.run_bag import (
+    EPISODE_RESULT,
+    EVALUATION,
+    EVALUATION_RETURN,
+    EVALUATION_TOPIC,
+    RESULT_TOPIC,
+    RESUMED,
+)
 from hexapod_doe.bags.salvage import set_aside
 from hexapod_doe.campaigns.row import Row
 
 # The profile that the graph's agent offers.
-_RESULTS = Topic('/fleet/episode_result', EPISODE_RESULT, (OfferedQos(depth=1000),))
+_RESULTS, _EVALUATION = (
+    Topic(f'/fleet/{name}', EPISODE_RESULT, (OfferedQos(depth=1000),))
+    for name in (RESULT_TOPIC, EVALUATION_TOPIC)
+)
 
 
 class Watch(Protocol):
@@ -72,6 +82,7 @@ class FleetRow:
             metadata[RESUMED] = str(done)
         self._recording = Recording(row.run_id, row.bag, metadata, CONTROL_PERIOD_NS)
         self._last_ns = 0
+        self._found: dict[str, str] = {}
         if cut is None:
             self._recording.forget_cuts()
         else:
@@ -99,8 +110,7 @@ class FleetRow:
     @property
     def saves_next(self) -> bool:
         """Whether the trainer is saved after the episode that is under way."""
-        after = self.trainer.episode + 1
-        return self._is_checkpoint(after) or after >= self.episodes
+        return self._is_checkpoint(self.trainer.episode + 1)
 
     def _is_checkpoint(self, episode: int) -> bool:
         return episode % self.trainer.config.training.checkpoint_every == 0
@@ -112,16 +122,28 @@ class FleetRow:
             BagError: the disk refuses.
             hexapod_agent.learning.checkpoint.CheckpointError: likewise.
         """
-        # The start of an episode is a period after the end of the one before.
-        self._last_ns += (summary.steps + 1) * CONTROL_PERIOD_NS
-        data = serialise(self.row.run_id, summary, self._last_ns)
-        self._recording.add_result(_RESULTS, data, summary.episode, summary.steps)
+        self._record(_RESULTS, summary)
         self._events.add(summary)
         episode = self.trainer.episode
         if self._is_checkpoint(episode) and episode < self.episodes:
             self._recording.secure()
             run_checkpoint.keep(self.row.bag, self.trainer)
         self._watch.episode(self.row, summary)
+
+    def evaluated(self, summary: EpisodeSummary) -> None:
+        """Record an episode of the evaluation.
+
+        Raises:
+            BagError: the disk refuses.
+        """
+        self._record(_EVALUATION, summary)
+        self._found = {EVALUATION_RETURN: repr(summary.average_return)}  # of those so far
+
+    def _record(self, topic: Topic, summary: EpisodeSummary) -> None:
+        # The start of an episode is a period after the end of the one before.
+        self._last_ns += (summary.steps + 1) * CONTROL_PERIOD_NS
+        data = serialise(self.row.run_id, summary, self._last_ns)
+        self._recording.add_result(topic, data, summary.episode, summary.steps)
 
     def ended(self) -> None:
         """Save the agent, close the bag, and forget the checkpoint.
@@ -131,7 +153,7 @@ class FleetRow:
         """
         agent = Path(f'{self.row.bag}.pt')
         checkpoint.save(agent, self.trainer, to_resume=False)
-        self._recording.finish(self.episodes, {'checkpoint': agent.name})
+        self._recording.finish(self.episodes, {'checkpoint': agent.name} | self._found)
         run_checkpoint.forget(self.row.bag)
         self._events.close()
         self._watch.end(self.row, None)
@@ -152,6 +174,7 @@ def _metadata(row: Row, config: RunSpec, episodes: int, device: str) -> dict[str
         'mode': 'train',
         'episodes': str(episodes),
         'window': str(config.training.window),
+        EVALUATION: str(config.training.evaluation),
         'spec': config.to_text(),
         'subscriptions': '',
         'device': device,

@@ -15,7 +15,7 @@ from mcap_ros2.decoder import DecoderFactory
 
 from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.bags.rosbag2 import partial_path
-from hexapod_doe.bags.run_bag import EPISODE_RESULT, RUN_RECORD
+from hexapod_doe.bags.run_bag import EPISODE_RESULT, RUN_RECORD, is_evaluation
 from hexapod_doe.bags.run_identity import settings
 from hexapod_doe.bags.salvage import whole_records
 from hexapod_doe.bags.verify import verify
@@ -91,7 +91,7 @@ def verify_done(progress: Progress, directory: Path) -> int:
 
 def _read_whole(run: Run, file: BagFile) -> None:
     """Take from a closed bag what it says of its run."""
-    topic = file.topic_of_type(EPISODE_RESULT)
+    topic = file.result_topic()
     metadata = file.run_metadata()
     _fill(run, metadata, topic, [result for _, result in file.decoded(topic)])
     run.seconds = _seconds(metadata, _time(metadata, _ENDED))
@@ -149,7 +149,7 @@ class _Kept:
                 self.metadata = record.metadata
             case Schema(name=name) if name == EPISODE_RESULT:
                 self._schema = record
-            case Channel() if self._schema is not None and record.schema_id == self._schema.id:
+            case Channel() if self._is_of_results(record):
                 self.topic = record.topic
                 decoders = DecoderFactory()
                 self._decode[record.id] = decoders.decoder_for('cdr', self._schema)
@@ -157,6 +157,10 @@ class _Kept:
                 decode = self._decode.get(record.channel_id)
                 if decode is not None:
                     self.results.append(decode(record.data))
+
+    def _is_of_results(self, channel: Channel) -> bool:
+        known = self._schema is not None and channel.schema_id == self._schema.id
+        return known and not is_evaluation(channel.topic)
 
 
 def _held(file: Path) -> bool:

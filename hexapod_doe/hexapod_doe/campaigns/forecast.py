@@ -12,7 +12,7 @@ from hexapod_doe.campaigns.campaign import shared_settings
 
 SECONDS_PER_STEP = 0.0037
 """Of a worker's processor per control period, with article.yaml on shared cores: docs/fleet.md."""
-_ELSE = ('config.task', 'config.cpg', 'config.learner.noise', 'config.training')
+_ELSE = ('evaluation', 'config.task', 'config.cpg', 'config.learner.noise', 'config.training')
 """Sections of the configuration that hardly change the time of a step."""
 _HOUR_S = 3600.0
 

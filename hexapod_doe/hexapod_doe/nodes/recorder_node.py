@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -24,13 +25,11 @@ from rclpy.serialization import deserialize_message
 
 from hexapod_doe.bags.carry_over import open_recording
 from hexapod_doe.bags.recording import Recording
-from hexapod_doe.bags.run_bag import EPISODE_RESULT
+from hexapod_doe.bags.run_bag import EPISODE_RESULT, EVALUATION_TOPIC, RESULT_TOPIC
 from hexapod_doe.bags.salvage import set_aside
 from hexapod_doe.errors import BagError
 from hexapod_doe.nodes.recorded_topic import recorded_topic
 from hexapod_doe.nodes.sampled_topics import SampledTopics
-
-RESULT_TOPIC = 'episode_result'
 
 
 def _seconds(name: str, default: float, description: str) -> Parameter:
@@ -78,7 +77,9 @@ class RecorderNode(Node):
         create_coroutine_service(self, SecureRecording, '~/secure', self._on_secure)
         create_coroutine_service(self, FinishRecording, '~/finish', self._on_finish)
         # Always there, so that it is matched when a run begins.
-        subscribe_raw(self, RESULT_TOPIC, EPISODE_RESULT, self._on_result, LOCK_STEP)
+        for topic in (RESULT_TOPIC, EVALUATION_TOPIC):
+            on_result = partial(self._on_result, topic)
+            subscribe_raw(self, topic, EPISODE_RESULT, on_result, LOCK_STEP)
         Diagnostics(self, self._health)
 
     def destroy_node(self) -> None:
@@ -147,7 +148,7 @@ class RecorderNode(Node):
     ) -> SecureRecording.Response:
         """Answer once the disk has the first results."""
         try:
-            recording = await self._with_results(request.episodes)
+            recording = await self._once(lambda r: r.first_lacking(request.episodes) is None)
             lacking = recording.first_lacking(request.episodes)
             if lacking is not None:
                 raise BagError(f'run {recording.run_id}: no result of episode {lacking} came')
@@ -162,7 +163,7 @@ class RecorderNode(Node):
     ) -> FinishRecording.Response:
         """Close the bag, or say why it cannot be closed."""
         try:
-            recording = await self._with_results(request.episodes)
+            recording = await self._once(lambda r: not r.lacking(request.episodes))
             self._samples.close()
             self._recording = None
             metadata = {entry.key: entry.value for entry in request.metadata}
@@ -174,38 +175,34 @@ class RecorderNode(Node):
             response.message = str(error)
         return response
 
-    async def _with_results(self, episodes: int) -> Recording:
-        """Return the recording once it has so many results, or when none came for too long."""
+    async def _once(self, has_results: Callable[[Recording], bool]) -> Recording:
+        """Return the recording once it has the results, or when none came for too long."""
         recording = self._usable_recording()
-        await until_true(
-            self,
-            lambda: recording.first_lacking(episodes) is None,
-            self._seconds('result_timeout'),
-        )
+        await until_true(self, lambda: has_results(recording), self._seconds('result_timeout'))
         return self._usable_recording()
 
     # Messages
 
-    def _on_result(self, data: bytes) -> None:
+    def _on_result(self, name: str, data: bytes) -> None:
         recording = self._recording
         if recording is None or self._failure:
             return
         result = deserialize_message(data, EpisodeResult)
         if result.run_id != recording.run_id:
             self.get_logger().warning(
-                f"{RESULT_TOPIC}: result of run '{result.run_id}' ignored, "
+                f"{name}: result of run '{result.run_id}' ignored, "
                 f"expected run '{recording.run_id}'",
                 throttle_duration_sec=10.0,
             )
             return
-        name = self.resolve_topic_name(RESULT_TOPIC)
-        topic = recorded_topic(name, self.get_publishers_info_by_topic(name))
+        full = self.resolve_topic_name(name)
+        topic = recorded_topic(full, self.get_publishers_info_by_topic(full))
         try:
             recording.add_result(topic, data, result.episode, result.steps)
         except BagError as error:
             self._fail(error)
         except ValueError as error:
-            self._drop(RESULT_TOPIC, error)
+            self._drop(name, error)
 
     def _on_sample(self, topic: str, data: bytes) -> None:
         if self._recording is None or self._failure:

@@ -97,7 +97,8 @@ def recorded_episodes(bag: BagFile, clock: Series) -> list[Span]:
     begins = [i for i, stamp in enumerate(outcomes.stamps) if outcomes.at(stamp).step == 0]
     if not begins:
         raise BagError(f'bag {bag.path}: {outcomes.topic} has no step 0, expected one per episode')
-    results = series_of_type(bag, EPISODE_RESULT)
+    has = EPISODE_RESULT in bag.types.values()
+    results = Series(bag, bag.result_topic(), EPISODE_RESULT) if has else None
     spans = []
     for position, (begin, end) in enumerate(pairwise([*begins, len(outcomes.stamps)])):
         first, last = outcomes.stamps[begin], outcomes.stamps[end - 1]

@@ -18,7 +18,7 @@ from hexapod_agent.learning.summary import EpisodeSummary
 from hexapod_agent.learning.training import Trainer
 from hexapod_agent.specification.observation import ObservationSpec
 from hexapod_agent.specification.run_spec import RunSpec
-from hexapod_agent.train import train_episode
+from hexapod_agent.train import evaluate, train_episode
 from hexapod_sim.sensor_table import LETTERS
 
 
@@ -30,10 +30,14 @@ class NotedRun(Run):
     def __init__(self, trainer: Trainer, episodes: int) -> None:
         self.trainer, self.episodes = trainer, episodes
         self.summaries: list[EpisodeSummary] = []
+        self.evaluation: list[EpisodeSummary] = []
         self.end: str | Exception = ''
 
     def episode_ended(self, summary: EpisodeSummary) -> None:
         self.summaries.append(summary)
+
+    def evaluated(self, summary: EpisodeSummary) -> None:
+        self.evaluation.append(summary)
 
     def ended(self) -> None:
         self.end = 'ended'
@@ -45,7 +49,11 @@ class NotedRun(Run):
 @pytest.fixture(scope='session')
 def full_config() -> RunSpec:
     """Networks and batches of the real size, and its arithmetic; episodes of 80 steps."""
-    changes = {'task': {'time_limit_steps': 80}, 'ddpg': {'buffer_size': 5000}}
+    changes = {
+        'task': {'time_limit_steps': 80},
+        'ddpg': {'buffer_size': 5000},
+        'training': {'evaluation': 1},
+    }
     return RunSpec.from_mapping(changes, 'full_config')
 
 
@@ -65,6 +73,7 @@ def train_alone() -> Callable[[NotedRun], NotedRun]:
         env = HexapodLine(run.trainer.spec.letters, run.trainer.config)
         while run.trainer.episode < run.episodes:
             run.episode_ended(train_episode(env, run.trainer))
+        run.evaluation = list(evaluate(env, run.trainer))
         return run
 
     return train

@@ -4,13 +4,16 @@
 """A fleet gives each run the numbers that it gets alone."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import torch
+from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.fleet.robots import Robots
 from hexapod_agent.fleet.stacked import StackedLearners
 from hexapod_agent.learning.training import TrainingDivergedError
+from hexapod_agent.train import evaluate
 
 RUNS = (('ABCDEFG', 3), ('', 4), ('BC', 5))
 
@@ -36,6 +39,13 @@ def assert_equal(ours, theirs) -> None:
 def assert_same_results(one, other) -> None:
     assert len(one.summaries) == len(other.summaries) == one.episodes
     for ours, theirs in zip(one.summaries, other.summaries, strict=True):
+        assert_equal(vars(ours), vars(theirs))
+    assert_same_evaluation(one, other)
+
+
+def assert_same_evaluation(one, other) -> None:
+    assert len(one.evaluation) == one.trainer.config.training.evaluation > 0
+    for ours, theirs in zip(one.evaluation, other.evaluation, strict=True):
         assert_equal(vars(ours), vars(theirs))
 
 
@@ -82,6 +92,9 @@ def test_a_stack_learns_what_its_runs_learn_alone(
         for ours, theirs in zip(run.summaries, alone.summaries, strict=True):
             assert ours.episode_return == pytest.approx(theirs.episode_return, rel=1e-3)
             assert ours.metrics['updates'] == theirs.metrics['updates']
+        env = HexapodLine(config=run.trainer.config)
+        run_alone = SimpleNamespace(evaluation=list(evaluate(env, run.trainer)))
+        assert_same_evaluation(run, run_alone)  # of what it learned, to the last bit
         for name, array in alone.trainer.agent.actor_parameters.arrays.items():
             ours = run.trainer.agent.actor_parameters.arrays[name]
             torch.testing.assert_close(ours, array, rtol=1e-2, atol=1e-3)
@@ -127,7 +140,8 @@ def test_a_run_that_diverges_leaves_the_others_alone(
 def test_a_fleet_counts_steps_and_the_parts_of_its_time(small_config, new_run, train_fleet):
     runs = [new_run(small_config, '', seed, episodes=2) for seed in (1, 2)]
     fleet = train_fleet(runs, places=2)
-    assert fleet.steps == sum(summary.steps for run in runs for summary in run.summaries)
+    had = (summary for run in runs for summary in (*run.summaries, *run.evaluation))
+    assert fleet.steps == sum(summary.steps for summary in had)
     shares = fleet.stopwatch.shares()
     assert list(shares) == ['physics', 'cpg', 'learner', 'rest']
     assert sum(shares.values()) == pytest.approx(1.0)
