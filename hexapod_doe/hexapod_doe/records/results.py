@@ -9,12 +9,15 @@ from typing import Any
 
 import pandas as pd
 from hexapod_sim.sensor_table import LETTERS
+from statsmodels.regression.linear_model import OLS, RegressionResults
 
 from hexapod_doe.designs.factor import Factor
+from hexapod_doe.errors import AnalysisError
 from hexapod_doe.fitting.anova import AnovaRow
-from hexapod_doe.fitting.blocks import BlockTest
+from hexapod_doe.fitting.blocks import BlockTest, block_basis
 from hexapod_doe.fitting.curvature import Curvature
 from hexapod_doe.fitting.lenth import Lenth
+from hexapod_doe.fitting.model import model_matrix
 from hexapod_doe.fitting.pure_error import LackOfFit
 from hexapod_doe.fitting.transform import Transform
 from hexapod_doe.records.findings import (
@@ -229,6 +232,32 @@ class Analysis:
     def final(self) -> Step:
         """The final model."""
         return self.steps[-1]
+
+    def model(self, name: str) -> RegressionResults:
+        """Return a fitted step as statsmodels' results, for `summary()` and all else they offer.
+
+        Its parameters go by their terms, those of the differences between blocks by
+        `block 1`, `block 2` and so on; with blocks its intervals are those of the blocks that
+        there are, where `predictions` allows for others.
+
+        Args:
+            name: Of the step; `final` is the last one, whether or not a term was eliminated.
+
+        Raises:
+            AnalysisError: There is no such step.
+        """
+        found = {step.name: step for step in self.steps} | {'final': self.final}
+        if name not in found:
+            raise AnalysisError(f'no step {name!r}, expected one of {", ".join(found)}')
+        step = found[name]
+        rows = self.table.iloc[list(step.rows)]
+        columns = pd.DataFrame(
+            model_matrix(rows[list(self.design.factors)], step.terms), columns=list(step.terms)
+        )
+        if self.design.block_column:
+            basis = block_basis(rows['block'].to_numpy())
+            columns[[f'block {number + 1}' for number in range(basis.shape[1])]] = basis
+        return OLS(pd.Series(step.response, name=self.response), columns).fit()
 
     def ranked(self) -> tuple[Prediction, ...]:
         """Return the predictions, best first."""
