@@ -126,7 +126,7 @@ class Channel:
         topic = self.topics[0]
         return topic.rsplit('/', 1)[0] if len(self.topics) > 1 else topic
 
-    @property
+    @cached_property
     def is_measured(self) -> bool:
         """Whether it comes from a device, which the sim or a driver stands for."""
         return self.source in ('robot', 'task')

@@ -52,7 +52,6 @@ class FakeDevice:
             topic: Degradation(self.row, topic, quality, settings['seed'])
             for topic in self.row.topics
         }
-        self.check_fault(settings['fault'])
 
     def own_topic(self, topic: str) -> str:
         """Return the device's own name of a topic of the sim."""
@@ -74,19 +73,6 @@ class FakeDevice:
             _reorder_joints(message, self._order, self._prefix)
         if fault in self._faults:
             self._faults[fault](message)
-
-    def check_fault(self, fault: str) -> None:
-        """Refuse a fault that this channel cannot have.
-
-        Raises:
-            ValueError: The text says which ones it can have.
-        """
-        allowed = fault_names(self.row)
-        if fault and fault not in allowed:
-            raise ValueError(
-                f"fault '{fault}': {self.row.device_topic} cannot have it, expected one of "
-                f'{", ".join(allowed)}'
-            )
 
 
 def faults(channel: Channel) -> dict[str, Callable[[Any], None]]:
@@ -156,6 +142,3 @@ def _reorder_joints(message: Any, order: list[int], prefix: str) -> None:
         values = getattr(message, field)
         if len(values):
             setattr(message, field, array('d', [values[i] if i >= 0 else 0.0 for i in order]))
-
-
-ALL_FAULTS = tuple(dict.fromkeys(name for row in DEVICES.values() for name in fault_names(row)))

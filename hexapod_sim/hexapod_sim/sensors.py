@@ -5,12 +5,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Protocol
 
 import numpy as np
 
-from hexapod_sim.channel import Channel, Numbers
+from hexapod_sim.channel import Channel, Field, Numbers
 from hexapod_sim.degradation import Degradation
 from hexapod_sim.quality import Qualities
 from hexapod_sim.robot import CONTROL_PERIOD_NS
@@ -83,16 +83,21 @@ class Sensors:
         """Let the devices measure at the end of a control period."""
         self._time_ns += CONTROL_PERIOD_NS
         for key, devices in self._devices.items():
-            truth = self._all_true(SENSORS[key])
+            truth = self._true(SENSORS[key].fields)
             for index, device in enumerate(devices):
                 rows = {name: row[index] for name, row in truth.items()}
                 device.sample(self._time_ns, truth if len(devices) == 1 else rows)
 
-    def read(self, channel: Channel) -> dict[str, Numbers]:
-        """Return what a channel's devices deliver now, by reading of all its fields."""
+    def read(self, channel: Channel, fields: Sequence[Field] = ()) -> dict[str, Numbers]:
+        """Return what a channel's devices deliver now, by reading.
+
+        Args:
+            channel: Which one.
+            fields: What is needed of it; all by default.
+        """
         devices = self._devices.get(channel.key)
         if devices is None:
-            return self._all_true(channel)
+            return self._true(fields or channel.fields)
         if len(devices) == 1:
             return dict(devices[0].newest)
         return {name: np.array([d.newest[name] for d in devices]) for name in devices[0].newest}
@@ -102,11 +107,11 @@ class Sensors:
         observed: dict[str, Numbers] = {}
         for channel in channels:
             if channel.is_measured:
-                observed |= channel.observe(self.read(channel))
+                observed |= channel.observe(self.read(channel, channel.observed))
         return observed
 
-    def _all_true(self, channel: Channel) -> dict[str, Numbers]:
-        """Return what perfect devices of a channel read now."""
-        if channel.source == 'robot':
-            return read(self._measured.simulation, (each.reading for each in channel.fields))
+    def _true(self, fields: Sequence[Field]) -> dict[str, Numbers]:
+        """Return what perfect devices read now."""
+        if fields[0].reading in MEASURED:
+            return read(self._measured.simulation, [field.reading for field in fields])
         return {'line_offset': np.array([self._measured.line_offset])}

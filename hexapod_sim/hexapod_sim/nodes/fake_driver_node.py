@@ -21,13 +21,11 @@ from hexapod_node.spin import run
 from hexapod_node.stamps import time_message, to_nanoseconds
 from hexapod_node.sync import LOCKSTEP, REALTIME
 from hexapod_node.timers import call_every
-from rcl_interfaces.msg import SetParametersResult
 from rclpy.parameter import Parameter as RclpyParameter
 from rclpy.publisher import Publisher
 from rclpy.serialization import serialize_message
 
 from hexapod_sim.fake_device import (
-    ALL_FAULTS,
     DEVICES,
     OUR_ORDER,
     REVERSED,
@@ -35,6 +33,7 @@ from hexapod_sim.fake_device import (
     STALE_STAMPS,
     STOPPED,
     FakeDevice,
+    fault_names,
 )
 from hexapod_sim.quality import PERFECT
 
@@ -65,13 +64,6 @@ PARAMETERS = (
     Parameter('joint_prefix', '', 'what it puts before the names of the joints'),
     Parameter('extra_joints', 0, 'joints that are not ours, with joint_order shuffled',
               range=(0, 100)),
-    Parameter(
-        'fault',
-        '',
-        'what is wrong with it; settable while it runs, which of them depends on the channel',
-        choices=('', *ALL_FAULTS),
-        read_only=False,
-    ),
 )  # fmt: skip
 
 
@@ -107,6 +99,11 @@ class FakeDriverNode(Node):
         declare(self, PARAMETERS)
         value: dict[str, Any] = {p.name: self.get_parameter(p.name).value for p in PARAMETERS}
         self._device = FakeDevice(value)
+        text = (
+            'what is wrong with it; settable while it runs, which of them depends on the channel'
+        )
+        faults = ('', *fault_names(self._device.row))
+        declare(self, [Parameter('fault', '', text, choices=faults, read_only=False)])
         self._received = self._published = 0
         self._lock_step = value['sync'] == LOCKSTEP
         qos = LOCK_STEP if self._lock_step else DRIVER
@@ -117,7 +114,6 @@ class FakeDriverNode(Node):
             outlet = _Outlet(topic, publisher)
             self.create_subscription(kind, topic, partial(self._on_sample, outlet), qos)
             self._outlets.append(outlet)
-        self.add_on_set_parameters_callback(self._on_set)
         if self._lock_step:
             call_every(self, _FLUSH_PERIOD_S, self._flush)
         Diagnostics(self, self._health, hardware=f'fake {value["channel"]}')
@@ -151,16 +147,6 @@ class FakeDriverNode(Node):
             if outlet.unheard and outlet.publisher.get_subscription_count():
                 outlet.publisher.publish(outlet.unheard)
                 outlet.unheard = b''
-
-    def _on_set(self, parameters: list[RclpyParameter]) -> SetParametersResult:
-        """Refuse a fault that the channel cannot have."""
-        try:
-            for parameter in parameters:
-                if parameter.name == 'fault':
-                    self._device.check_fault(parameter.value)
-        except ValueError as error:
-            return SetParametersResult(successful=False, reason=str(error))
-        return SetParametersResult(successful=True)
 
     def _health(self) -> Health:
         counts = {
