@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
-from hexapod_agent.deployment.policies import random_policy
+from hexapod_agent.algorithms.policies import random_policy
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.environment.evaluation import run_episode, summarize
 from hexapod_agent.learning.training import Trainer

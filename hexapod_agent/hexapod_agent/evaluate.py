@@ -17,12 +17,12 @@ from rich.console import Console
 from rich.progress import Progress, track
 from rich.table import Table
 
-from hexapod_agent.deployment.policies import (
+from hexapod_agent.algorithms.policies import (
     Policy,
     constant_policy,
     random_policy,
-    trained_policy,
 )
+from hexapod_agent.deployment import agent_file
 from hexapod_agent.environment.constant_action import GENERATIONS, best_constant_action
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.environment.evaluation import (
@@ -32,7 +32,6 @@ from hexapod_agent.environment.evaluation import (
     run_episode,
     summarize,
 )
-from hexapod_agent.learning import checkpoint
 from hexapod_agent.specification.run_spec import ConfigError, RunSpec, add_spec_options
 
 _ROWS = (
@@ -63,7 +62,7 @@ def main(args: Sequence[str] | None = None) -> None:
         name, subject = _subject(options)
         console = Console()
         episodes = list(track(subject, name, options.starts, console=console, transient=True))
-    except (ConfigError, checkpoint.CheckpointError, GraphError) as error:
+    except (ConfigError, agent_file.CheckpointError, GraphError) as error:
         parser.error(str(error))
     evaluation = summarize(episodes)
     console.print(_table(name, evaluation))
@@ -105,14 +104,13 @@ def _parser() -> CommandLine:
 def _subject(options: argparse.Namespace) -> tuple[str, Iterator[Episode]]:
     """Name of what the options ask for, and its episodes."""
     if options.checkpoint:
-        trainer = checkpoint.load(options.checkpoint)
-        letters = trainer.spec.letters
-        name = f'{letters or "no optional channel"}, {trainer.episode} episodes'
+        agent = agent_file.load(options.checkpoint)
+        letters = agent.spec.letters
+        name = f'{letters or "no optional channel"}, {agent.episode} episodes'
         if options.graph:
-            _check_measured(trainer.config)
+            _check_measured(agent.config)
             return name, _on_graph(options)
-        env, policy = HexapodLine(letters, trainer.config), trained_policy(trainer.agent)
-        return name, _in_environment(env, policy, options)
+        return name, _in_environment(HexapodLine(config=agent.config), agent.policy, options)
     env = HexapodLine('', RunSpec.load(options.config, options.set))
     if options.policy == 'random':
         return 'random actions', _in_environment(env, random_policy(options.seed), options)

@@ -8,7 +8,7 @@ is the contract of what to feed in and what comes out.
 """
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -20,10 +20,9 @@ from hexapod_sim.sensor_table import PREVIOUS_ACTION
 from numpy.typing import NDArray
 from onnx import TensorProto, helper, numpy_helper
 
-from hexapod_agent.algorithms.ddpg.layers import NORM_EPSILON
-from hexapod_agent.algorithms.ddpg.running_scale import LIMIT
-from hexapod_agent.learning import checkpoint
-from hexapod_agent.learning.training import Trainer
+from hexapod_agent.algorithms.policies import NORM_EPSILON, SCALED_LIMIT, MlpPolicy
+from hexapod_agent.deployment import agent_file
+from hexapod_agent.deployment.agent_file import TrainedAgent
 from hexapod_agent.specification.observation import ObservationSpec
 
 _OPSET = 17
@@ -39,21 +38,21 @@ def main(args: Sequence[str] | None = None) -> None:
     parser.add_argument('out', type=output_file(), help='ONNX file to write')
     options = parser.parse_args(args)
     try:
-        trainer = checkpoint.load(options.checkpoint)
-        onnx.save(policy_model(trainer), options.out)
-    except (OSError, checkpoint.CheckpointError) as error:
+        agent = agent_file.load(options.checkpoint)
+        onnx.save(policy_model(agent), options.out)
+    except (OSError, agent_file.CheckpointError) as error:
         parser.error(str(error))
-    print(f'{options.out}: action from {", ".join(trainer.spec.sizes)}')
+    print(f'{options.out}: action from {", ".join(agent.spec.sizes)}')
 
 
-def policy_model(trainer: Trainer) -> onnx.ModelProto:
+def policy_model(agent: TrainedAgent) -> onnx.ModelProto:
     """Return the noise-free policy as a model.
 
     Inputs are one array (batch, size) float64 per reading, by its key in the sensor table, and
     `previous_action`; the output `action` is (batch, 30) float32, within +-1. The observation is
     made in float64 and rounded once, as `ObservationSpec.assemble` does.
     """
-    spec = trainer.spec
+    spec, policy = agent.spec, agent.policy
     constants = {
         'center': spec.center, 'scale': spec.scale,
         'lowest': np.array(-1.0), 'highest': np.array(1.0),
@@ -65,27 +64,18 @@ def policy_model(trainer: Trainer) -> onnx.ModelProto:
         helper.make_node('Clip', ['scaled', 'lowest', 'highest'], ['clipped']),
         helper.make_node('Cast', ['clipped'], ['observation'], to=TensorProto.FLOAT),
     ]
-    scale = trainer.agent.scale
-    if scale:
+    if policy.scale is not None:
         nodes += [
             helper.make_node('Sub', ['observation', 'mean'], ['difference']),
             helper.make_node('Mul', ['difference', 'gain'], ['amplified']),
             helper.make_node('Clip', ['amplified', 'least', 'most'], ['input']),
         ]
         constants |= {
-            'mean': scale.center, 'gain': scale.gain,
-            'least': np.array(-LIMIT, np.float32), 'most': np.array(LIMIT, np.float32),
+            'mean': policy.scale[0], 'gain': policy.scale[1],
+            'least': np.array(-SCALED_LIMIT, np.float32),
+            'most': np.array(SCALED_LIMIT, np.float32),
         }  # fmt: skip
-    arrays = trainer.agent.actor_parameters.arrays
-    weights = {name: array[0].numpy() for name, array in arrays.items()}
-    norm = trainer.config.learner.actor.layer_norm
-    layers = _layers('input' if scale else 'observation', weights, norm)
-    constants |= {
-        name: np.ones(weights[name.replace('.gain', '.bias')].shape, np.float32)
-        for node in layers
-        for name in node.input
-        if name.endswith('.gain')
-    }
+    layers, weights = _layers('observation' if policy.scale is None else 'input', policy)
     graph = helper.make_graph(
         [*nodes, *layers],
         'hexapod_policy',
@@ -100,42 +90,42 @@ def policy_model(trainer: Trainer) -> onnx.ModelProto:
         graph, opset_imports=[helper.make_opsetid('', _OPSET)], ir_version=_IR_VERSION,
         producer_name='hexapod_agent', doc_string='Policy of a hexapod that follows a line.',
     )  # fmt: skip
-    helper.set_model_props(model, contract(trainer))
+    helper.set_model_props(model, contract(agent))
     onnx.checker.check_model(model, full_check=True)
     return model
 
 
 def _layers(
-    x: str, weights: Mapping[str, NDArray[np.float32]], normalize: bool
-) -> list[onnx.NodeProto]:
+    x: str, policy: MlpPolicy
+) -> tuple[list[onnx.NodeProto], dict[str, NDArray[np.float32]]]:
     """Affine layers with ReLU between them, normalised before it or not, and tanh at the end."""
-    nodes = []
-    names = [name.removesuffix('.weight') for name in weights if name.endswith('.weight')]
-    for name in names:
-        arrays = [f'{name}.weight', f'{name}.bias']
+    nodes, constants = [], dict[str, NDArray[np.float32]]()
+    for number, (weight, bias) in enumerate(policy.layers):
+        name, last = f'layer{number}', number == len(policy.layers) - 1
+        arrays = {f'{name}.weight': weight, f'{name}.bias': bias}
         nodes.append(helper.make_node('Gemm', [x, *arrays], [f'{name}.sum'], transB=1))
-        last = name == names[-1]
         x = f'{name}.sum'
-        if normalize and not last:
-            x = f'{name}.normalized'
+        if policy.layer_norm and not last:
+            gain, x = f'{name}.gain', f'{name}.normalized'
             nodes.append(
                 helper.make_node(
-                    'LayerNormalization', [f'{name}.sum', f'{name}.gain'], [x],
-                    epsilon=NORM_EPSILON,
+                    'LayerNormalization', [f'{name}.sum', gain], [x], epsilon=NORM_EPSILON
                 )
-            )  # fmt: skip
+            )
+            arrays[gain] = np.ones(bias.shape, np.float32)
         output = _ACTION if last else f'{name}.output'
         nodes.append(helper.make_node('Tanh' if last else 'Relu', [x], [output]))
+        constants |= arrays
         x = output
-    return nodes
+    return nodes, constants
 
 
-def contract(trainer: Trainer) -> dict[str, str]:
+def contract(agent: TrainedAgent) -> dict[str, str]:
     """Return what a user of the model must know, as its metadata; values are JSON."""
-    cpg = trainer.config.cpg
+    cpg = agent.config.cpg
     content: dict[str, Any] = {
-        'observations': trainer.spec.letters,
-        'inputs': inputs_of(trainer.spec),
+        'observations': agent.spec.letters,
+        'inputs': inputs_of(agent.spec),
         'action': {
             'layout': 'leg-major: five numbers of each leg in turn',
             'legs': LEGS,
@@ -145,8 +135,8 @@ def contract(trainer: Trainer) -> dict[str, str]:
         },
         'joints': JOINTS,
         'control_period_ns': CONTROL_PERIOD_NS,
-        'seed': trainer.seed,
-        'episodes': trainer.episode,
+        'seed': agent.seed,
+        'episodes': agent.episode,
     }
     return {key: json.dumps(value, ensure_ascii=False) for key, value in content.items()}
 

@@ -23,9 +23,9 @@ from hexapod_sim.film import (
 )
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 
-from hexapod_agent.deployment.policies import Policy, constant_policy, trained_policy
+from hexapod_agent.algorithms.policies import Policy, constant_policy
+from hexapod_agent.deployment import agent_file
 from hexapod_agent.environment.env import HexapodLine
-from hexapod_agent.learning import checkpoint
 from hexapod_agent.specification.run_spec import ConfigError, RunSpec
 
 _PERIODS_PER_FRAME = 2
@@ -46,7 +46,7 @@ def main(args: Sequence[str] | None = None) -> None:
         if options.strip:
             chosen = np.linspace(0, len(frames) - 1, options.frames).round().astype(int)
             write_picture(strip([frames[index] for index in chosen]), options.strip)
-    except (ConfigError, checkpoint.CheckpointError, FilmError, OSError) as error:
+    except (ConfigError, agent_file.CheckpointError, FilmError, OSError) as error:
         parser.error(str(error))
 
 
@@ -87,9 +87,9 @@ def _subject(options: argparse.Namespace) -> tuple[HexapodLine, Policy]:
     if not options.checkpoint:
         config = RunSpec.load(options.config)
         return HexapodLine('', config), constant_policy(np.zeros(ACTION_SIZE, np.float32))
-    trainer = checkpoint.load(options.checkpoint)
-    config = trainer.config.changed_by(options.config) if options.config else trainer.config
-    return HexapodLine(trainer.spec.letters, config), trained_policy(trainer.agent)
+    agent = agent_file.load(options.checkpoint)
+    config = agent.config.changed_by(options.config) if options.config else agent.config
+    return HexapodLine(config=config), agent.policy
 
 
 if __name__ == '__main__':

@@ -18,6 +18,7 @@ from hexapod_sim.task import EVALUATION_SEED
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.learning import checkpoint
 from hexapod_agent.learning.event_log import EventLog
+from hexapod_agent.learning.numerics import set_numerics
 from hexapod_agent.learning.player import Agent
 from hexapod_agent.learning.progress import Report, episode_report
 from hexapod_agent.learning.run_checkpoint import different, listed
@@ -34,6 +35,7 @@ EVENTS = 'tensorboard'  # folder of the same curves, for `tensorboard --logdir`
 
 def train_episode(env: HexapodLine, trainer: Trainer) -> EpisodeSummary:
     """Run and learn one episode, the trainer's next."""
+    set_numerics(trainer.config.training.precision)
     return _run_episode(env, trainer, trainer.seed, trainer.episode)
 
 
@@ -89,10 +91,10 @@ def train(
             file.flush()
             events.add(summary)
             if trainer.episode % trainer.config.training.checkpoint_every == 0:
-                checkpoint.save(directory / CHECKPOINT, trainer, to_resume=True)
+                checkpoint.save(directory / CHECKPOINT, trainer)
             report(summary)
-    checkpoint.save(directory / CHECKPOINT, trainer, to_resume=True)
-    checkpoint.save(directory / AGENT, trainer, to_resume=False)
+    checkpoint.save(directory / CHECKPOINT, trainer)
+    checkpoint.save_agent(directory / AGENT, trainer)
     return _evaluated(env, trainer, directory / EVALUATION, report)
 
 
@@ -181,7 +183,7 @@ def _trainer(options: argparse.Namespace) -> Trainer:
     """A new run, or the one that the directory holds."""
     file = options.out / CHECKPOINT
     if options.resume:
-        trainer = checkpoint.load(file, to_resume=True)
+        trainer = checkpoint.load(file)
         _check_same_run(options, trainer)
         return trainer
     if file.exists():

@@ -11,8 +11,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import asdict
 
-from hexapod_agent.deployment.policies import trained_policy
-from hexapod_agent.learning.checkpoint import CheckpointError, load
+from hexapod_agent.deployment.agent_file import CheckpointError, load
 from hexapod_sim.command_line import CommandLine, file, one_line, output_file, path, whole
 from rich.console import Console
 from rich.table import Table
@@ -67,13 +66,12 @@ def _compare(options: argparse.Namespace) -> list[Comparison]:
         from hexapod_doe.nodes.shadow_node import shadow_on_graph
 
         return shadow_on_graph(options.bag, options.checkpoint, options.episode)
-    bag, trainer = BagFile(options.bag), load(options.checkpoint)
-    policy = trained_policy(trainer.agent)
-    recorded = Recorded(bag, trainer.spec)
+    bag, agent = BagFile(options.bag), load(options.checkpoint)
+    recorded = Recorded(bag, agent.spec)
     spans = recorded_episodes(bag, recorded.commands)
     if options.episode is not None:
         spans = [episode_of(options.episode, spans, bag)]
-    return [shadow(recorded, span, policy, trainer.config.cpg) for span in spans]
+    return [shadow(recorded, span, agent.policy, agent.config.cpg) for span in spans]
 
 
 def _table(row: Comparison) -> Table:

@@ -4,7 +4,7 @@
 """The best constant action beside the zero action: what an agent must beat to have learned."""
 
 import numpy as np
-from hexapod_agent.deployment.policies import constant_policy
+from hexapod_agent.algorithms.policies import constant_policy
 from hexapod_agent.environment.constant_action import best_constant_action
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.environment.evaluation import run_episode, summarize

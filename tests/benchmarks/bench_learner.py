@@ -25,6 +25,7 @@ from typing import Any
 import stable_baselines3
 import torch
 from hexapod_agent.environment.env import HexapodLine
+from hexapod_agent.learning.numerics import set_numerics
 from hexapod_agent.learning.training import Trainer
 from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_cpg.mapping import ACTION_SIZE
@@ -90,6 +91,7 @@ def gflop(shapes: Shapes) -> float:
 def full_trainer(changes: dict[str, Any]) -> tuple[Trainer, HexapodLine]:
     """A trainer of ABCDE with a group of updates due, and its environment."""
     config = RunSpec.from_mapping(changes, 'benchmark').observing('ABCDE')
+    set_numerics(config.training.precision)
     trainer, env = Trainer(config, 1), HexapodLine('ABCDE', config)
     observation, _ = env.reset(seed=1)
     trainer.begin_episode(0)
@@ -102,7 +104,7 @@ def time_ours(changes: dict[str, Any]) -> float:
     """One update of ours, in ms."""
     trainer, _ = full_trainer(changes)
     trainer.learn()
-    return milliseconds(trainer.learn, 3) / trainer.due
+    return milliseconds(trainer.learn, 3) / trainer.learner.due
 
 
 def time_peer(python: Path, script: str, sizes: dict[str, Any]) -> float | str:
@@ -122,7 +124,7 @@ def time_peer(python: Path, script: str, sizes: dict[str, Any]) -> float | str:
 
 def time_baseline(trainer: Trainer, env: HexapodLine) -> float:
     """One gradient step of stable-baselines3's DDPG with the same layers and batch."""
-    config, group = trainer.config, trainer.due
+    config, group = trainer.config, trainer.learner.due
     learner = config.learner
     layers = {'pi': list(learner.actor.hidden), 'qf': list(learner.critic.hidden)}
     model = stable_baselines3.DDPG(

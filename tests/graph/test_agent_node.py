@@ -111,7 +111,7 @@ def test_a_seed_gives_the_same_weights_on_the_graph_and_in_the_environment(
     assert response.result.final_average_reward == alone.average_return
     *_, judged = evaluate(env, alone)
     assert response.result.evaluation_return == judged.average_return
-    on_graph, in_env = (t.state_dict(to_resume=False) for t in (trainers[0], alone))
+    on_graph, in_env = (t.state_dict() for t in (trainers[0], alone))
     assert_same(on_graph, in_env)
 
 

@@ -212,7 +212,7 @@ class Inputs:
 def ros_args(tmp_path, request) -> list[str]:
     """Return arguments for an untrained agent of all channels, in real time if the test says."""
     trainer = Trainer(RunSpec.from_mapping(SMALL, 'small').observing(LETTERS), 5)
-    checkpoint.save(tmp_path / 'agent.pt', trainer, to_resume=False)
+    checkpoint.save_agent(tmp_path / 'agent.pt', trainer)
     given = [f'checkpoint:={tmp_path}/agent.pt', 'check_seconds:=0.0']
     given += [f'{p.name}:=0.5' for p in real_time.PARAMETERS if p.name.startswith('max_age')]
     if 'real_time' in request.node.name:

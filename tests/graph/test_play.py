@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 
 import pytest
+from hexapod_agent.deployment import agent_file
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.learning import checkpoint
 from hexapod_agent.learning.training import Trainer
@@ -34,8 +35,8 @@ def path(tmp_path) -> str:
     """Return an untrained checkpoint of the channels B and C."""
     trainer = Trainer(RunSpec.from_mapping(SMALL, 'small').observing('BC'), 5)
     # Weights large enough that the observation decides the action.
-    trainer.agent.actor_parameters.flat.mul_(4.0)
-    checkpoint.save(tmp_path / 'agent.pt', trainer, to_resume=False)
+    trainer.learner.networks.actor_parameters.flat.mul_(4.0)
+    checkpoint.save_agent(tmp_path / 'agent.pt', trainer)
     return str(tmp_path / 'agent.pt')
 
 
@@ -68,9 +69,9 @@ def test_playing_subscribes_to_the_checkpoints_channels_and_learns_nothing(
     assert (response.result.message, response.result.checkpoint) == ('', path)
     assert {'/body/twist', '/imu/data'} < seen[-1]
     assert '/joint_torques' not in seen[-1]
-    trainer = checkpoint.load(path)
-    env = HexapodLine('BC', trainer.config)
-    played = evaluate.run_episode(env, evaluate.trained_policy(trainer.agent), 9, 0)
+    agent = agent_file.load(path)
+    env = HexapodLine('BC', agent.config)
+    played = evaluate.run_episode(env, agent.policy, 9, 0)
     assert response.result.final_average_reward == played.episode_return
 
 

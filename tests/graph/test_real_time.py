@@ -38,7 +38,7 @@ AGES = [f'{p.name}:=1.0' for p in real_time.PARAMETERS if p.name.startswith('max
 def ros_args(tmp_path) -> list[str]:
     """Return arguments for real time and an untrained agent of the channels C and F."""
     trainer = Trainer(RunSpec.from_mapping(SMALL, 'small').observing('CF'), 5)
-    checkpoint.save(tmp_path / 'agent.pt', trainer, to_resume=False)
+    checkpoint.save_agent(tmp_path / 'agent.pt', trainer)
     given = ['sync:=realtime', f'checkpoint:={tmp_path}/agent.pt', 'check_seconds:=0.2', *AGES]
     given += ['max_age:=1.0']
     return ['--ros-args', *(word for value in given for word in ('-p', value))]

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hexapod_agent.deployment.policies import trained_policy
+from hexapod_agent.deployment import agent_file
 from hexapod_agent.learning import checkpoint
 from hexapod_agent.learning.training import Trainer
 from hexapod_agent.nodes.agent_node import AgentNode
@@ -43,8 +43,8 @@ SMALL = {
 def save_agent(path: Path, letters: str, seed: int) -> Path:
     """Save an untrained agent whose observation decides its action."""
     trainer = Trainer(RunSpec.from_mapping(SMALL, 'small').observing(letters), seed)
-    trainer.agent.actor_parameters.flat.mul_(4.0)
-    checkpoint.save(path, trainer, to_resume=False)
+    trainer.learner.networks.actor_parameters.flat.mul_(4.0)
+    checkpoint.save_agent(path, trainer)
     return path
 
 
@@ -99,8 +99,8 @@ def test_the_live_agent_node_repeats_the_bag_too(bag: Path, tmp_path) -> None:
 
 
 def test_one_other_action_is_found_and_the_rest_stays_equal(bag: Path, tmp_path) -> None:
-    trainer = checkpoint.load(tmp_path / 'agent.pt')
-    policy = trained_policy(trainer.agent)
+    trainer = agent_file.load(tmp_path / 'agent.pt')
+    policy = trainer.policy
     calls = 0
 
     def slips_once(observation):

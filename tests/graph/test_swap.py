@@ -177,7 +177,7 @@ def pace() -> float:
 def ros_args(tmp_path, swapped, pace: float) -> list[str]:
     """Return arguments for real time, an untrained agent of all channels, and the swaps."""
     trainer = Trainer(RunSpec.from_mapping(SMALL, 'small').observing(LETTERS), 5)
-    checkpoint.save(tmp_path / 'agent.pt', trainer, to_resume=False)
+    checkpoint.save_agent(tmp_path / 'agent.pt', trainer)
     given = {
         'checkpoint': f'{tmp_path}/agent.pt',
         'check_seconds': str(LISTEN_S / pace),

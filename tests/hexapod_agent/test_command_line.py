@@ -14,7 +14,7 @@ from hexapod_agent import evaluate, export, film
 
 @pytest.fixture
 def agent(make_trainer, tmp_path) -> Path:
-    checkpoint.save(tmp_path / 'agent.pt', make_trainer(), to_resume=False)
+    checkpoint.save_agent(tmp_path / 'agent.pt', make_trainer())
     return tmp_path / 'agent.pt'
 
 

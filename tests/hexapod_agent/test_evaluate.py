@@ -9,10 +9,9 @@ import sys
 
 import numpy as np
 import pytest
-from hexapod_agent.deployment.policies import (
+from hexapod_agent.algorithms.policies import (
     constant_policy,
     random_policy,
-    trained_policy,
 )
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.environment.evaluation import Episode, run_episode, summarize
@@ -54,13 +53,13 @@ def test_constant_walk_goes_forward(small_config):
 def test_baselines_and_trained_policy_repeat(make_trainer):
     seen = np.zeros(make_trainer().spec.size, np.float32)
     np.testing.assert_array_equal(random_policy(3)(seen), random_policy(3)(seen))
-    policy = trained_policy(make_trainer().agent)
+    policy = make_trainer().learner.policy()
     np.testing.assert_array_equal(policy(seen), policy(seen))
     assert policy(seen).shape == (30,)
 
 
 def test_command_line_of_a_checkpoint(make_trainer, tmp_path, capsys):
-    checkpoint.save(tmp_path / 'a.pt', make_trainer(), to_resume=False)
+    checkpoint.save_agent(tmp_path / 'a.pt', make_trainer())
     json_file = tmp_path / 'a.json'
     arguments = [str(tmp_path / 'a.pt'), '--starts', '2', '--json', str(json_file)]
     evaluate.main(arguments)
@@ -86,7 +85,7 @@ def test_command_line_plays_no_baseline_on_the_graph(capsys):
 def test_figures_are_not_measured_by_bad_sensors(make_trainer, small_config, tmp_path, capsys):
     config = small_config.with_value('sensors.line_offset.noise', 0.01, 'a test')
     trainer = make_trainer(config=config)
-    checkpoint.save(tmp_path / 'a.pt', trainer, to_resume=False)
+    checkpoint.save_agent(tmp_path / 'a.pt', trainer)
     with pytest.raises(SystemExit):
         evaluate.main([str(tmp_path / 'a.pt'), '--graph'])
     assert 'measured by the topics of line_offset, whose errors' in capsys.readouterr().err

@@ -9,7 +9,6 @@ import numpy as np
 import onnx
 import onnxruntime
 import pytest
-from hexapod_agent.deployment.policies import trained_policy
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.learning import checkpoint
 from hexapod_sim.sensor_table import CHANNELS, LETTERS, PREVIOUS_ACTION
@@ -32,20 +31,21 @@ TOLERANCE = 1e-5
 def trainer(make_trainer, request):
     letters, config = request.param
     made = make_trainer(letters, config=request.getfixturevalue(config))
-    made.agent.actor_parameters.flat.mul_(8.0)  # actions of every size, also saturated ones
-    if made.agent.scale:
+    actor = made.learner.networks.actor_parameters
+    actor.flat.mul_(8.0)  # actions of every size, also saturated ones
+    if made.learner.scale:
         generator = np.random.default_rng(1)
         for _ in range(9):
-            made.agent.scale.add(generator.normal(0.1, 0.3, made.spec.size).astype(np.float32))
-        made.agent.scale.refresh()
+            made.learner.scale.add(generator.normal(0.1, 0.3, made.spec.size).astype(np.float32))
+        made.learner.scale.refresh()
     if made.config.learner.actor.layer_norm:  # which undoes the scale of all but the last layer
-        made.agent.actor_parameters.arrays['output.weight'].mul_(32.0)
+        actor.arrays['output.weight'].mul_(32.0)
     return made
 
 
 @pytest.fixture
 def session(trainer, tmp_path):
-    checkpoint.save(tmp_path / 'agent.pt', trainer, to_resume=False)
+    checkpoint.save_agent(tmp_path / 'agent.pt', trainer)
     export.main([str(tmp_path / 'agent.pt'), str(tmp_path / 'agent.onnx')])
     return onnxruntime.InferenceSession(
         tmp_path / 'agent.onnx', providers=['CPUExecutionProvider']
@@ -66,7 +66,7 @@ def random_readings(spec, generator, count):
 def test_actions_equal_the_checkpoints(trainer, session):
     parts = random_readings(trainer.spec, np.random.default_rng(0), 200)
     (actions,) = session.run(None, parts)
-    policy = trained_policy(trainer.agent)
+    policy = trainer.learner.policy()
     for row in range(200):
         one = {key: values[row] for key, values in parts.items()}
         expected = policy(trainer.spec.assemble(one, one[PREVIOUS_ACTION]))
@@ -77,7 +77,7 @@ def test_actions_equal_the_checkpoints(trainer, session):
 
 def test_it_drives_the_robot_from_raw_readings(trainer, session):
     env = HexapodLine(trainer.spec.letters, trainer.config)
-    policy = trained_policy(trainer.agent)
+    policy = trainer.learner.policy()
     observation, _ = env.reset(seed=3)
     action = np.zeros(30, np.float32)
     for _ in range(20):
@@ -113,7 +113,7 @@ def test_metadata_is_the_sensor_contract(trainer, session):
 def test_file_is_valid_and_small(trainer, session, tmp_path):
     model = onnx.load(tmp_path / 'agent.onnx')
     onnx.checker.check_model(model, full_check=True)
-    numbers = sum(np.prod(shape) for shape in trainer.agent.actor_parameters.shapes.values())
+    numbers = sum(w.size + b.size for w, b in trainer.learner.policy().layers)
     assert (tmp_path / 'agent.onnx').stat().st_size < 4 * numbers + 10_000
 
 

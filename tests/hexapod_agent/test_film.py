@@ -14,7 +14,7 @@ SMALL = ['--width', '48', '--height', '32', '--seconds', '0.4']
 
 
 def test_film_and_strip_of_a_checkpoint(make_trainer, tmp_path):
-    checkpoint.save(tmp_path / 'a.pt', make_trainer(), to_resume=False)
+    checkpoint.save_agent(tmp_path / 'a.pt', make_trainer())
     out, picture = tmp_path / 'a.gif', tmp_path / 'a.png'
     arguments = [str(tmp_path / 'a.pt'), '--out', str(out), '--strip', str(picture)]
     film.main([*arguments, '--frames', '3', *SMALL])

@@ -7,7 +7,7 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
-from hexapod_agent.deployment.policies import Policy, constant_policy, trained_policy
+from hexapod_agent.algorithms.policies import Policy, constant_policy
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.environment.evaluation import Evaluation, run_episode, summarize
 from hexapod_agent.learning.training import Trainer
@@ -29,7 +29,7 @@ def test_short_training_steers_and_the_constant_action_does_not(name, episodes):
     env = HexapodLine('ABCDE', config)
     trainer = Trainer(config.observing('ABCDE'), seed=1)
     summaries = [train_episode(env, trainer) for _ in range(episodes)]
-    learned = evaluate(env, trained_policy(trainer.agent))
+    learned = evaluate(env, trainer.learner.policy())
     constant = evaluate(env, constant_policy(np.zeros(30, np.float32)))
     assert learned.mean_offset < 0.5 * constant.mean_offset
     assert learned.final_average_reward > constant.final_average_reward

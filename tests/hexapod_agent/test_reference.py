@@ -57,10 +57,10 @@ def trained(observations: str, lengths: Sequence[int]) -> dict[str, Any]:
         start.append('--set=training.evaluation=0')  # no part of what was recorded
         for length in lengths:
             train.main([*start, f'--episodes={length}', *(['--resume'] if weights else [])])
-            agent = checkpoint.load(out / train.CHECKPOINT, to_resume=True).agent
+            networks = checkpoint.load(out / train.CHECKPOINT).learner.networks
             weights[str(length)] = {
-                'actor': digest(agent.actor_parameters.arrays),
-                'critic': digest(agent.critic_parameters.arrays),
+                'actor': digest(networks.actor_parameters.arrays),
+                'critic': digest(networks.critic_parameters.arrays),
             }
         with (out / train.LOG).open(newline='') as file:
             rows = list(csv.DictReader(file))

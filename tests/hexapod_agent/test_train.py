@@ -9,6 +9,7 @@ import re
 import numpy as np
 import pytest
 import yaml
+from hexapod_agent.deployment import agent_file
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.learning import checkpoint
 from hexapod_agent.learning.player import Player
@@ -45,10 +46,11 @@ def test_run_leaves_log_and_checkpoints(config_file, tmp_path, capsys):
     assert [row['episode'] for row in rows] == ['0', '1', '2']
     terms = [float(value) for key, value in rows[1].items() if key.startswith('term_')]
     assert sum(terms) == pytest.approx(float(rows[1]['episode_return']))
-    agent = checkpoint.load(out / train.AGENT)
+    agent = agent_file.load(out / train.AGENT)
     assert (agent.spec.letters, agent.seed, agent.episode) == ('BC', 2, 3)
     printed = capsys.readouterr().out.replace('\n', '')
-    assert f'final average reward {agent.average_return:.1f}' in printed
+    average = checkpoint.load(out / train.CHECKPOINT).average_return
+    assert f'final average reward {average:.1f}' in printed
     assert train.AGENT in printed
 
 
@@ -74,8 +76,8 @@ def test_an_evaluation_ends_the_run_and_changes_no_number_of_it(config_file, tmp
     run(*given, '--set', 'training.evaluation=0', '--out', plain)
     assert not (plain / train.EVALUATION).exists()
     assert log(plain) == log(judged)
-    state = checkpoint.load(judged / train.CHECKPOINT, to_resume=True).state_dict(to_resume=True)
-    same = checkpoint.load(plain / train.CHECKPOINT, to_resume=True).state_dict(to_resume=True)
+    state = checkpoint.load(judged / train.CHECKPOINT).learner.state_dict()
+    same = checkpoint.load(plain / train.CHECKPOINT).learner.state_dict()
     assert state['noise_generator'] == same['noise_generator']
     assert state['replay_generator'] == same['replay_generator']
 
@@ -232,6 +234,6 @@ def test_divergence_is_named_and_leaves_the_checkpoint_before_it(
         run('--episodes', 4, '--config', config_file, '--out', part)
     assert str(part / train.CHECKPOINT) in str(stopped.value)
     monkeypatch.setattr(Trainer, 'observe', usual)
-    assert checkpoint.load(part / train.CHECKPOINT, to_resume=True).episode == 2
+    assert checkpoint.load(part / train.CHECKPOINT).episode == 2
     run('--episodes', 4, '--out', part, '--resume')
     assert log(part) == log(whole)

@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import torch
 import yaml
+from hexapod_agent.deployment import agent_file
 from hexapod_agent.environment.env import HexapodLine
-from hexapod_agent.learning import checkpoint, run_checkpoint
+from hexapod_agent.learning import run_checkpoint
 from hexapod_agent.learning.training import Trainer, TrainingDivergedError
 from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_agent.train import train_episode
@@ -97,8 +97,10 @@ def test_rows_equal_those_trained_alone(arguments, hyperparameters, tmp_path):
         for name in ('critic_loss', 'mean_q', 'updates'):
             expected = [summary.metrics[name] for summary in alone]
             np.testing.assert_array_equal(record.episodes[name], expected)
-        agent = checkpoint.load(row.bag.parent / record.metadata['checkpoint']).agent
-        assert torch.equal(agent.actor_parameters.flat, trainer.agent.actor_parameters.flat)
+        agent = agent_file.load(row.bag.parent / record.metadata['checkpoint'])
+        for ours, alone in zip(agent.policy.layers, trainer.learner.policy().layers, strict=True):
+            np.testing.assert_array_equal(ours[0], alone[0])
+            np.testing.assert_array_equal(ours[1], alone[1])
 
 
 @pytest.mark.parametrize('slots', [1, 4])

@@ -21,7 +21,7 @@ def ready(shell):
     """Write an untrained checkpoint, and a line that jumps after one second and after two."""
     config = RunSpec.from_mapping({'actor': {'hidden': [8, 8]}}, 'test')
     trainer = Trainer(config.observing('C'), 3)
-    checkpoint.save(shell.directory / 'agent.pt', trainer, to_resume=False)
+    checkpoint.save_agent(shell.directory / 'agent.pt', trainer)
     (shell.directory / 'jumps.yaml').write_text(
         'task: {time_limit_steps: 100, line_jump: 0.3, line_period: 1.0, start_offset: 0.0}\n'
     )

@@ -20,7 +20,7 @@ SMALL = {'actor': {'hidden': [16, 12]}, 'critic': {'hidden': [16, 12]}}
 @pytest.fixture
 def agent(shell) -> str:
     trainer = Trainer(RunSpec.from_mapping(SMALL, 'small').observing('CE'), 5)
-    checkpoint.save(shell.directory / 'agent.pt', trainer, to_resume=False)
+    checkpoint.save_agent(shell.directory / 'agent.pt', trainer)
     return 'agent.pt'
 
 

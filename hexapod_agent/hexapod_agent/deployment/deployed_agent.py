@@ -12,8 +12,8 @@ import numpy as np
 from hexapod_cpg.mapping import ACTION_SIZE, Command, command_from_action
 from numpy.typing import NDArray
 
-from hexapod_agent.deployment.policies import Policy, trained_policy
-from hexapod_agent.learning import checkpoint
+from hexapod_agent.algorithms.policies import Policy
+from hexapod_agent.deployment import agent_file
 from hexapod_agent.specification.run_spec import RunSpec
 
 
@@ -33,18 +33,18 @@ class DeployedAgent:
 
     @classmethod
     def load(cls, path: str | Path, changes: str = '') -> DeployedAgent:
-        """Read a checkpoint.
+        """Read an agent's file.
 
         Args:
             path: File of `train`.
-            changes: File of changes to the checkpoint's configuration; empty for none.
+            changes: File of changes to the agent's specification; empty for none.
 
         Raises:
             ValueError: A file cannot be used; the text names it.
         """
-        trainer = checkpoint.load(path)
-        config = trainer.config.changed_by(changes) if changes else trainer.config
-        return cls(config, trained_policy(trainer.agent))
+        agent = agent_file.load(path)
+        config = agent.config.changed_by(changes) if changes else agent.config
+        return cls(config, agent.policy)
 
     def act(self, readings: Mapping[str, NDArray[np.float64]]) -> Command:
         """Return the command of one control period.

@@ -13,7 +13,7 @@ import numpy as np
 from hexapod_cpg.mapping import ACTION_SIZE
 from numpy.typing import NDArray
 
-from hexapod_agent.deployment.policies import constant_policy
+from hexapod_agent.algorithms.policies import constant_policy
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.environment.evaluation import run_episode, summarize
 

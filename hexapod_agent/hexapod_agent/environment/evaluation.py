@@ -11,7 +11,7 @@ from hexapod_sim.sensors import read
 from hexapod_sim.sums import ordered_sum
 from numpy.typing import NDArray
 
-from hexapod_agent.deployment.policies import Policy
+from hexapod_agent.algorithms.policies import Policy
 from hexapod_agent.environment.env import HexapodLine
 
 _PERIOD_S = CONTROL_PERIOD_NS * 1e-9

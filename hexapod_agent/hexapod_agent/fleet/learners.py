@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from hexapod_agent.fleet.crew import Crew, Job
 from hexapod_agent.fleet.seat import Seat
+from hexapod_agent.learning.numerics import set_numerics
 
 
 class Learners(Protocol):
@@ -63,7 +64,12 @@ class SeparateLearners:
 
     def learn(self, seats: Sequence[Seat]) -> list[Job]:
         """Return one job per trainer."""
-        return [partial(seat.attempt, seat.agent.learn) for seat in seats]
+        return [partial(seat.attempt, partial(_learn, seat)) for seat in seats]
 
     def collect(self) -> None:
         """Nothing to wait for: the jobs were all."""
+
+
+def _learn(seat: Seat) -> None:
+    set_numerics(seat.trainer.config.training.precision)  # of this thread, and of this run
+    seat.agent.learn()

@@ -11,7 +11,7 @@ import numpy as np
 from hexapod_sim.task import Outcome
 from numpy.typing import NDArray
 
-from hexapod_agent.deployment.policies import Policy
+from hexapod_agent.algorithms.policies import Policy
 from hexapod_agent.learning.summary import EpisodeRecord, EpisodeSummary
 
 

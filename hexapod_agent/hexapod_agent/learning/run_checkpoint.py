@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from hexapod_agent.deployment.agent_file import CheckpointError
 from hexapod_agent.learning import checkpoint
-from hexapod_agent.learning.checkpoint import CheckpointError
 from hexapod_agent.learning.training import Trainer
 from hexapod_agent.specification.run_spec import RunSpec
 
@@ -26,7 +26,7 @@ def keep(bag: str | Path, trainer: Trainer) -> None:
     Raises:
         CheckpointError: it cannot be written; the one before is still there.
     """
-    checkpoint.save(checkpoint_path(bag), trainer, to_resume=True)
+    checkpoint.save(checkpoint_path(bag), trainer)
 
 
 def resumed(bag: str | Path, config: RunSpec, seed: int, episodes: int) -> Trainer | None:
@@ -38,7 +38,7 @@ def resumed(bag: str | Path, config: RunSpec, seed: int, episodes: int) -> Train
     path = checkpoint_path(bag)
     if not path.exists():
         return None
-    trainer = checkpoint.load(path, to_resume=True)
+    trainer = checkpoint.load(path)
     differences = different(trainer, config, seed)
     if trainer.episode >= episodes:
         differences.append(f'{trainer.episode} episodes have been, less than {episodes} expected')

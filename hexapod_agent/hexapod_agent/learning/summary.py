@@ -12,6 +12,7 @@ import numpy as np
 from hexapod_sim.task import Outcome
 from numpy.typing import NDArray
 
+from hexapod_agent.algorithms.learner import Metrics
 from hexapod_agent.learning.metrics import SATURATED_SHARE, UPDATES, in_order
 
 SATURATED = 0.95  # an actor's output beyond this counts as saturated
@@ -71,11 +72,12 @@ class EpisodeRecord:
         self._saturated += int(np.count_nonzero(np.abs(output) > SATURATED))
         self._outputs += output.size
 
-    def add_update(self, seen: Mapping[str, float]) -> None:
-        """Count one gradient step, by what it saw."""
-        for name, value in seen.items():
-            self._updated[name] += value
-        self._updates += 1
+    def add_updates(self, seen: Metrics) -> None:
+        """Count gradient steps, by what they saw."""
+        for name, values in seen.items():
+            for value in values.tolist():  # in this order, to the last bit
+                self._updated[name] += value
+        self._updates += max((values.size for values in seen.values()), default=0)
 
     def summarize(self, last: Outcome, average_return: float) -> EpisodeSummary:
         """Close the episode with its last outcome."""

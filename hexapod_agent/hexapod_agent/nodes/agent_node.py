@@ -24,9 +24,9 @@ from hexapod_node.spin import run
 from rclpy.action import CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 
-from hexapod_agent.deployment.policies import trained_policy
-from hexapod_agent.learning import checkpoint, run_checkpoint
-from hexapod_agent.learning.checkpoint import CheckpointError
+from hexapod_agent.deployment import agent_file
+from hexapod_agent.deployment.agent_file import CheckpointError
+from hexapod_agent.learning import run_checkpoint
 from hexapod_agent.learning.player import Agent, Player
 from hexapod_agent.learning.training import Trainer
 from hexapod_agent.nodes.action_names import PLAY_RUN, TRAIN_RUN
@@ -196,8 +196,8 @@ def trained(goal: TrainRun.Goal) -> tuple[RunSpec, Agent]:
     Raises:
         ValueError: the checkpoint cannot be read, or observes other channels than the goal says.
     """
-    trainer = checkpoint.load(goal.checkpoint)
-    config = trainer.config
+    agent = agent_file.load(goal.checkpoint)
+    config = agent.config
     if goal.observations and parse_observations(goal.observations) != config.letters:
         raise ValueError(
             f"observations '{goal.observations}': checkpoint '{goal.checkpoint}' observes "
@@ -205,7 +205,7 @@ def trained(goal: TrainRun.Goal) -> tuple[RunSpec, Agent]:
         )
     if goal.config:
         config = config.changed_by(goal.config)
-    return config, Player(trained_policy(trainer.agent), config.training.window)
+    return config, Player(agent.policy, config.training.window)
 
 
 def main(args: Sequence[str] | None = None) -> None:

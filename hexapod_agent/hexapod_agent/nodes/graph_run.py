@@ -21,9 +21,9 @@ from hexapod_sim.robot import CONTROL_PERIOD_NS
 from hexapod_sim.sensor_table import CHANNELS
 from hexapod_sim.task import EVALUATION_SEED, episode_seed
 
-from hexapod_agent.learning import run_checkpoint
-from hexapod_agent.learning.checkpoint import save
+from hexapod_agent.learning import checkpoint, run_checkpoint
 from hexapod_agent.learning.event_log import EventLog
+from hexapod_agent.learning.numerics import set_numerics
 from hexapod_agent.learning.player import Agent
 from hexapod_agent.learning.provenance import provenance
 from hexapod_agent.learning.summary import EpisodeSummary
@@ -135,18 +135,20 @@ class GraphRun:
         await peers.configure('sim', 'sensors', qualities)
         await peers.configure('cpg', 'cpg', asdict(self._config.cpg.hopf))
         first = await self._open_bag() if goal.bag else 0
+        if isinstance(self._agent, Trainer):
+            set_numerics(self._config.training.precision)
         for self._episode in range(first, goal.episodes):
             self._check_wanted(self._episode)
             await self._run_episode()
             await self._keep()
         found = await self._evaluate()
-        checkpoint, bag = goal.checkpoint, ''
+        agent, bag = goal.checkpoint, ''
         if goal.bag:
             if isinstance(self._agent, Trainer):
-                checkpoint = f'{goal.bag}.pt'
-                save(checkpoint, self._agent, to_resume=False)
-            # A name, not a path: bags are moved, and their checkpoints with them.
-            found |= {'checkpoint': Path(checkpoint).name}
+                agent = f'{goal.bag}.pt'
+                checkpoint.save_agent(agent, self._agent)
+            # A name, not a path: bags are moved, and their agents with them.
+            found |= {'checkpoint': Path(agent).name}
             bag = await peers.finish_recording(goal.episodes, found)
             run_checkpoint.forget(goal.bag)
         self._goal_handle.succeed()
@@ -154,7 +156,7 @@ class GraphRun:
             final_average_reward=self._agent.summary.average_return,
             evaluation_return=float(found.get('evaluation_return', math.nan)),
             episodes=self._episode + 1,
-            checkpoint=checkpoint,
+            checkpoint=agent,
             bag=bag,
         )
 

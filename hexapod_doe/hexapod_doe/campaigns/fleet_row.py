@@ -8,8 +8,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Protocol
 
+from hexapod_agent.deployment.agent_file import CheckpointError
 from hexapod_agent.learning import checkpoint, run_checkpoint
-from hexapod_agent.learning.checkpoint import CheckpointError
 from hexapod_agent.learning.event_log import EventLog
 from hexapod_agent.learning.provenance import provenance
 from hexapod_agent.learning.summary import EpisodeSummary
@@ -120,7 +120,7 @@ class FleetRow:
 
         Raises:
             BagError: the disk refuses.
-            hexapod_agent.learning.checkpoint.CheckpointError: likewise.
+            hexapod_agent.deployment.agent_file.CheckpointError: likewise.
         """
         self._record(_RESULTS, summary)
         self._events.add(summary)
@@ -152,7 +152,7 @@ class FleetRow:
             BagError: the disk refuses.
         """
         agent = Path(f'{self.row.bag}.pt')
-        checkpoint.save(agent, self.trainer, to_resume=False)
+        checkpoint.save_agent(agent, self.trainer)
         self._recording.finish(self.episodes, {'checkpoint': agent.name} | self._found)
         run_checkpoint.forget(self.row.bag)
         self._events.close()

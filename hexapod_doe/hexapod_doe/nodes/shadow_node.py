@@ -14,7 +14,7 @@ from collections import defaultdict
 from collections.abc import Collection, Sequence
 from pathlib import Path
 
-from hexapod_agent.learning.checkpoint import load
+from hexapod_agent.deployment.agent_file import load
 from hexapod_agent.nodes.action_names import PLAY_RUN
 from hexapod_agent.nodes.agent_node import AgentNode
 from hexapod_agent.specification.observation import ObservationSpec

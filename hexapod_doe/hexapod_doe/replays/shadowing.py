@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from hexapod_agent.deployment.policies import Policy
+from hexapod_agent.algorithms.policies import Policy
 from hexapod_agent.nodes.messages import decode
 from hexapod_agent.specification.observation import ObservationSpec
 from hexapod_agent.specification.run_spec import CpgConfig

@@ -25,7 +25,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from hexapod_agent.deployment.policies import Policy, constant_policy, trained_policy
+from hexapod_agent.algorithms.policies import Policy, constant_policy
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.environment.evaluation import Evaluation, run_episode, summarize
 from hexapod_agent.learning import checkpoint
@@ -54,7 +54,7 @@ class Training:
         self._lines: list[dict[str, Any]] = []
         self._seconds = 0.0
         if self._notes.exists():
-            self._trainer = checkpoint.load(self._path, to_resume=True)
+            self._trainer = checkpoint.load(self._path)
             notes = json.loads(self._notes.read_text())[str(self._trainer.episode)]
             self._lines, self._seconds = notes
         else:
@@ -73,7 +73,7 @@ class Training:
             if trainer.episode % trainer.config.training.checkpoint_every == 0:
                 self._keep()
         _append(self._out / RESULTS, self._lines)
-        checkpoint.save(self._path, trainer, to_resume=False)
+        checkpoint.save_agent(self._path, trainer)
         self._notes.unlink(missing_ok=True)
 
     def _keep(self) -> None:
@@ -81,11 +81,11 @@ class Training:
         old = json.loads(self._notes.read_text()) if self._notes.exists() else {}
         newest = {str(self._trainer.episode): (self._lines, self._seconds)}
         self._notes.write_text(json.dumps(dict(list(old.items())[-1:]) | newest))
-        checkpoint.save(self._path, self._trainer, to_resume=True)
+        checkpoint.save(self._path, self._trainer)
 
     def _judge(self) -> Evaluation:
         env = HexapodLine(config=self._trainer.config)
-        return _evaluation(env, trained_policy(self._trainer.agent), self._study.starts)
+        return _evaluation(env, self._trainer.learner.policy(), self._study.starts)
 
     def _line(self, found: Evaluation) -> dict[str, Any]:
         run, config = self._run, self._trainer.config

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hexapod_agent.deployment import agent_file
 from hexapod_agent.deployment.deployed_agent import DeployedAgent
-from hexapod_agent.deployment.policies import trained_policy
 from hexapod_agent.learning import checkpoint
 from hexapod_agent.learning.training import Trainer
 from hexapod_agent.specification.observation import ObservationError, ObservationSpec
@@ -23,8 +23,8 @@ SMALL = {'actor': {'hidden': [16, 12]}, 'critic': {'hidden': [16, 12]}}
 @pytest.fixture
 def path(tmp_path) -> str:
     trainer = Trainer(RunSpec.from_mapping(SMALL, 'small').observing('E'), 5)
-    trainer.agent.actor_parameters.flat.mul_(4.0)
-    checkpoint.save(tmp_path / 'agent.pt', trainer, to_resume=False)
+    trainer.learner.networks.actor_parameters.flat.mul_(4.0)
+    checkpoint.save_agent(tmp_path / 'agent.pt', trainer)
     return str(tmp_path / 'agent.pt')
 
 
@@ -35,7 +35,7 @@ def readings(spec: ObservationSpec, seed: int) -> dict[str, np.ndarray]:
 
 def test_it_acts_as_the_policy_on_readings_and_its_last_action(path: str) -> None:
     agent = DeployedAgent.load(path)
-    policy = trained_policy(checkpoint.load(path).agent)
+    policy = agent_file.load(path).policy
     action = np.zeros(ACTION_SIZE, dtype=np.float32)
     for seed in range(3):
         seen = readings(agent.spec, seed)

@@ -5,7 +5,7 @@
 
 import numpy as np
 import pytest
-from hexapod_agent.deployment.policies import constant_policy
+from hexapod_agent.algorithms.policies import constant_policy
 from hexapod_agent.environment import constant_action
 from hexapod_agent.environment.constant_action import best_constant_action
 from hexapod_agent.environment.env import HexapodLine

@@ -20,7 +20,7 @@ RUNS = (('ABCDEFG', 3), ('', 4), ('BC', 5))
 
 def assert_same_state(one, other) -> None:
     """Compare everything that a checkpoint holds, to the last bit."""
-    ours, theirs = (run.trainer.state_dict(to_resume=True) for run in (one, other))
+    ours, theirs = (run.trainer.state_dict() for run in (one, other))
     assert_equal(ours, theirs)
 
 
@@ -95,8 +95,8 @@ def test_a_stack_learns_what_its_runs_learn_alone(
         env = HexapodLine(config=run.trainer.config)
         run_alone = SimpleNamespace(evaluation=list(evaluate(env, run.trainer)))
         assert_same_evaluation(run, run_alone)  # of what it learned, to the last bit
-        for name, array in alone.trainer.agent.actor_parameters.arrays.items():
-            ours = run.trainer.agent.actor_parameters.arrays[name]
+        for name, array in alone.trainer.learner.networks.actor_parameters.arrays.items():
+            ours = run.trainer.learner.networks.actor_parameters.arrays[name]
             torch.testing.assert_close(ours, array, rtol=1e-2, atol=1e-3)
 
 
@@ -112,11 +112,11 @@ def test_agents_of_a_stack_learn_at_once_after_one_of_them_fell(
         falls = outcome.step == 5 and place == 0 and not runs[0].summaries
         return replace(outcome, terminated=True, cause='fell') if falls else outcome
 
-    def counted_collect(stack):
-        if stack._pending is not None:
-            seats, updates = stack._pending
-            learning.append((len(seats), len(updates)))
-        collect(stack)
+    def counted_collect(learners):
+        stack = learners._stack
+        if stack._pending:
+            learning.append((len(stack._learning), len(stack._pending)))
+        collect(learners)
 
     monkeypatch.setattr(Robots, 'advance', advance_to_a_fall)
     monkeypatch.setattr(StackedLearners, 'collect', counted_collect)
@@ -131,7 +131,7 @@ def test_a_run_that_diverges_leaves_the_others_alone(
     small_config, new_run, train_alone, train_fleet
 ):
     runs = [new_run(small_config, 'B', seed) for seed in (1, 2)]
-    runs[0].trainer.agent.critic_parameters.flat.fill_(float('inf'))
+    runs[0].trainer.learner.networks.critic_parameters.flat.fill_(float('inf'))
     train_fleet(runs, places=2)
     assert isinstance(runs[0].end, TrainingDivergedError)
     assert_same_results(runs[1], train_alone(new_run(small_config, 'B', 2)))

@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
+from hexapod_agent.deployment import agent_file
+from hexapod_agent.deployment.agent_file import CheckpointError
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.learning import checkpoint
 from hexapod_agent.train import train_episode
@@ -32,7 +34,7 @@ def flatten(value, prefix=''):
 
 
 def assert_same(first, second) -> None:
-    left, right = (dict(flatten(t.state_dict(to_resume=True))) for t in (first, second))
+    left, right = (dict(flatten(t.state_dict())) for t in (first, second))
     assert left.keys() == right.keys()
     for path, value in left.items():
         if isinstance(value, torch.Tensor):
@@ -48,7 +50,7 @@ def test_resumed_run_equals_the_uninterrupted_one(make_trainer, tmp_path, reques
     advance(whole, 4)
     part = make_trainer(config=config)
     advance(part, 2)
-    checkpoint.save(tmp_path / 'a.pt', part, to_resume=True)
+    checkpoint.save(tmp_path / 'a.pt', part)
     resumed = checkpoint.load(tmp_path / 'a.pt')
     advance(resumed, 2)
     assert resumed.returns == whole.returns
@@ -60,7 +62,7 @@ def test_kill_in_mid_episode_repeats_that_episode(make_trainer, tmp_path):
     advance(whole, 3)
     killed = make_trainer()
     advance(killed, 2)
-    checkpoint.save(tmp_path / 'a.pt', killed, to_resume=True)
+    checkpoint.save(tmp_path / 'a.pt', killed)
     # Ten steps into the third episode the process dies; only the file remains.
     env = HexapodLine('BC', killed.config)
     seen, _ = env.reset(seed=killed.seed, options={'episode': 2})
@@ -77,21 +79,21 @@ def test_kill_in_mid_episode_repeats_that_episode(make_trainer, tmp_path):
 def test_small_checkpoint_acts_alike(make_trainer, tmp_path):
     trainer = make_trainer()
     advance(trainer, 1)
-    checkpoint.save(tmp_path / 'small.pt', trainer, to_resume=False)
-    checkpoint.save(tmp_path / 'large.pt', trainer, to_resume=True)
+    checkpoint.save_agent(tmp_path / 'small.pt', trainer)
+    checkpoint.save(tmp_path / 'large.pt', trainer)
     assert (tmp_path / 'small.pt').stat().st_size < (tmp_path / 'large.pt').stat().st_size
-    loaded = checkpoint.load(tmp_path / 'small.pt')
-    seen = torch.rand(1, trainer.spec.size)
-    assert torch.equal(loaded.agent.act(seen), trainer.agent.act(seen))
+    loaded = agent_file.load(tmp_path / 'small.pt')
+    seen = np.random.default_rng(0).uniform(-1, 1, trainer.spec.size).astype(np.float32)
+    np.testing.assert_array_equal(loaded.policy(seen), trainer.learner.act(seen, explore=False))
     assert (loaded.seed, loaded.spec.letters, loaded.config) == (5, 'BC', trainer.config)
-    with pytest.raises(checkpoint.CheckpointError, match='holds an agent alone, expected a run'):
-        checkpoint.load(tmp_path / 'small.pt', to_resume=True)
+    with pytest.raises(CheckpointError, match='holds an agent alone, expected a run'):
+        checkpoint.load(tmp_path / 'small.pt')
 
 
 def test_failed_write_leaves_the_old_file(make_trainer, tmp_path, monkeypatch):
     path = tmp_path / 'a.pt'
     trainer = make_trainer()
-    checkpoint.save(path, trainer, to_resume=False)
+    checkpoint.save_agent(path, trainer)
     before = path.read_bytes()
 
     def fail(content, file):
@@ -99,8 +101,8 @@ def test_failed_write_leaves_the_old_file(make_trainer, tmp_path, monkeypatch):
         raise OSError('disk full')
 
     monkeypatch.setattr(torch, 'save', fail)
-    with pytest.raises(checkpoint.CheckpointError, match=r'a.pt.*cannot be written: disk full'):
-        checkpoint.save(path, trainer, to_resume=False)
+    with pytest.raises(CheckpointError, match=r'a.pt.*cannot be written: disk full'):
+        checkpoint.save_agent(path, trainer)
     assert path.read_bytes() == before
 
 
@@ -111,7 +113,8 @@ def write_unsealed(path, trainer) -> None:
         'observations': trainer.spec.letters,
         'seed': trainer.seed,
         'config': trainer.config.to_mapping(),
-        'state': trainer.state_dict(to_resume=True),
+        'state': {'episode': trainer.episode, 'returns': trainer.returns}
+        | trainer.learner.state_dict(),
     }
     torch.save(content, path)
 
@@ -142,8 +145,8 @@ def mutated(content: bytes, rng: np.random.Generator) -> bytes:
 def loaded_or_refused(path):
     """Return the trainer of a checkpoint, and why there is none."""
     try:
-        return checkpoint.load(path, to_resume=True), ''
-    except checkpoint.CheckpointError as error:
+        return checkpoint.load(path), ''
+    except CheckpointError as error:
         return None, str(error)
 
 
@@ -168,7 +171,7 @@ def test_damage_is_refused_or_harmless(make_trainer, tmp_path, write, count):
     trainer = make_trainer()
     advance(trainer, 2)
     path = tmp_path / 'a.pt'
-    write(path, trainer, *[True] * (write is checkpoint.save))
+    write(path, trainer)
     # A file without a seal has bytes that no checksum covers, and nothing reads.
     least = 0.95 if write is checkpoint.save else 0.5
     assert check_mutations(path, trainer, count) >= least * count
@@ -177,28 +180,28 @@ def test_damage_is_refused_or_harmless(make_trainer, tmp_path, write, count):
 @pytest.mark.parametrize('share', [0.0, 0.3, 0.99])
 def test_truncated_file_is_refused(make_trainer, tmp_path, share):
     path = tmp_path / 'a.pt'
-    checkpoint.save(path, make_trainer(), to_resume=False)
+    checkpoint.save_agent(path, make_trainer())
     content = path.read_bytes()
     path.write_bytes(content[: int(share * len(content))])
-    with pytest.raises(checkpoint.CheckpointError, match=r'a.pt.*expected a whole file'):
-        checkpoint.load(path)
+    with pytest.raises(CheckpointError, match=r'a.pt.*expected a whole file'):
+        agent_file.load(path)
 
 
 @pytest.mark.parametrize('cut', [1, 40, 81])
 def test_a_lost_seal_does_not_make_an_old_file(make_trainer, tmp_path, cut):
     path = tmp_path / 'a.pt'
-    checkpoint.save(path, make_trainer(), to_resume=False)
+    checkpoint.save_agent(path, make_trainer())
     path.write_bytes(path.read_bytes()[:-cut])
-    with pytest.raises(checkpoint.CheckpointError, match=r'a.pt.*is damaged'):
-        checkpoint.load(path)
+    with pytest.raises(CheckpointError, match=r'a.pt.*is damaged'):
+        agent_file.load(path)
 
 
 def test_files_of_before_the_seal_still_load(make_trainer, tmp_path):
     trainer = make_trainer()
     advance(trainer, 2)
     write_unsealed(tmp_path / 'old.pt', trainer)
-    assert_same(checkpoint.load(tmp_path / 'old.pt', to_resume=True), trainer)
-    shipped = checkpoint.load(AGENTS / 'ABCDE.pt')
+    assert_same(checkpoint.load(tmp_path / 'old.pt'), trainer)
+    shipped = agent_file.load(AGENTS / 'ABCDE.pt')
     assert (shipped.spec.letters, shipped.episode) == ('ABCDE', 300)
 
 
@@ -208,19 +211,17 @@ def test_configuration_of_another_version_is_refused(make_trainer, tmp_path, mon
     content = trainer.config.to_mapping()
     content['learner']['ddpg']['momentum'] = 0.9
     monkeypatch.setattr(type(trainer.config), 'to_mapping', lambda config: content)
-    checkpoint.save(path, trainer, to_resume=False)
-    with pytest.raises(
-        checkpoint.CheckpointError, match=r"a.pt.*cannot be used.*'learner.ddpg.momentum'"
-    ):
-        checkpoint.load(path)
+    checkpoint.save_agent(path, trainer)
+    with pytest.raises(CheckpointError, match=r"a.pt.*cannot be used.*'learner.ddpg.momentum'"):
+        agent_file.load(path)
 
 
 def test_missing_and_foreign_files_are_refused(tmp_path):
-    with pytest.raises(checkpoint.CheckpointError, match=r'no.pt.*not found'):
-        checkpoint.load(tmp_path / 'no.pt')
+    with pytest.raises(CheckpointError, match=r'no.pt.*not found'):
+        agent_file.load(tmp_path / 'no.pt')
     torch.save({'weights': torch.zeros(1)}, tmp_path / 'other.pt')
-    with pytest.raises(checkpoint.CheckpointError, match='expected format'):
-        checkpoint.load(tmp_path / 'other.pt')
+    with pytest.raises(CheckpointError, match='expected format'):
+        agent_file.load(tmp_path / 'other.pt')
 
 
 class Payload:
@@ -230,8 +231,8 @@ class Payload:
 
 def test_code_in_a_file_does_not_run(tmp_path):
     (tmp_path / 'evil.pt').write_bytes(pickle.dumps(Payload(), protocol=2))
-    with pytest.raises(checkpoint.CheckpointError, match='cannot be read'):
-        checkpoint.load(tmp_path / 'evil.pt')
+    with pytest.raises(CheckpointError, match='cannot be read'):
+        agent_file.load(tmp_path / 'evil.pt')
     torch.save({'format': Payload()}, tmp_path / 'evil2.pt')
-    with pytest.raises(checkpoint.CheckpointError, match='cannot be read'):
-        checkpoint.load(tmp_path / 'evil2.pt')
+    with pytest.raises(CheckpointError, match='cannot be read'):
+        agent_file.load(tmp_path / 'evil2.pt')

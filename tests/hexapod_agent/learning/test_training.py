@@ -64,7 +64,7 @@ def test_updates_come_in_groups_by_their_ratio(small_config, update_every, ratio
     due = []
     for step in range(28):
         trainer.observe(observation(trainer), outcome(step))
-        due.append(trainer.due)
+        due.append(trainer.learner.due)
     assert due[: 28 // update_every * update_every] == [*[0] * (update_every - 1), group] * (
         28 // update_every
     )
@@ -121,7 +121,7 @@ def test_reward_is_scaled_for_the_critic_and_not_for_the_report(small_config):
     trainer = Trainer(config.observing('BC'), 1)
     play(trainer, [2.0] * 20)
     batch = Batch.empty(1, 50, trainer.spec.size, ACTION_SIZE, torch.float32)
-    trainer.sample(batch)
+    trainer.learner.sample(batch)
     assert batch.reward.eq(1.0).all()
     assert trainer.summary.episode_return == 40.0
 
@@ -132,9 +132,8 @@ def test_episodes_come_in_order(make_trainer):
 
 
 def weights(trainer) -> torch.Tensor:
-    return torch.cat(
-        [trainer.agent.actor_parameters.flat, trainer.agent.critic_parameters.flat], 1
-    )
+    networks = trainer.learner.networks
+    return torch.cat([networks.actor_parameters.flat, networks.critic_parameters.flat], 1)
 
 
 def test_same_seed_same_weights(make_trainer, small_config):
@@ -172,7 +171,7 @@ def test_reward_that_is_not_finite_is_named(make_trainer):
 def test_loss_that_is_not_finite_is_named(make_trainer):
     trainer = make_trainer()
     play(trainer, [1.0] * 20)
-    trainer.agent.critic_parameters.flat[0, 0] = float('nan')
+    trainer.learner.networks.critic_parameters.flat[0, 0] = float('nan')
     trainer.begin_episode(1)
     trainer.observe(observation(trainer), outcome(7))
     with pytest.raises(TrainingDivergedError, match=r'critic_loss.* is nan.*step 7 of episode 1'):

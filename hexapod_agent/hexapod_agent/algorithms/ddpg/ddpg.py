@@ -6,8 +6,7 @@
 Lillicrap et al. 2016, with the order of operations of MATLAB's DDPG agent: critic, actor, targets.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import torch
@@ -17,25 +16,12 @@ from hexapod_agent.algorithms.ddpg.action_value import ActionValue
 from hexapod_agent.algorithms.ddpg.networks import Actor, initial_bounds
 from hexapod_agent.algorithms.ddpg.optimizer import ClippedAdam
 from hexapod_agent.algorithms.ddpg.parameters import ParameterStack
-from hexapod_agent.algorithms.ddpg.running_scale import RunningScale
 from hexapod_agent.algorithms.hyperparameters import ActorConfig, CriticConfig
 from hexapod_agent.algorithms.replay import Batch
 
-
-@dataclass(frozen=True)
-class UpdateStatistics:
-    """What one update saw, each of shape (agents,).
-
-    Attributes:
-        critic_loss: Mean squared temporal difference.
-        actor_loss: -mean Q of the policy's actions, with the terms that the config adds.
-        mean_q: Mean Q of the policy's actions.
-    """
-
-    critic_loss: Tensor
-    actor_loss: Tensor
-    mean_q: Tensor
-
+METRICS = ('critic_loss', 'actor_loss', 'mean_q')
+"""What an update sees: the mean squared temporal difference; -mean Q of the policy's actions, with
+the terms that the config adds; mean Q of the policy's actions."""
 
 _CRITICS = ('critic', 'twin_critic')  # names in a state
 
@@ -47,7 +33,6 @@ class Ddpg:
         actor_parameters: Online actor.
         critic_parameters: Online critic, the first of two.
         actor_config: The policy's layers and training.
-        scale: How observations become the networks' inputs; None if they are.
 
     Args:
         observation_size: Numbers of an observation.
@@ -61,7 +46,6 @@ class Ddpg:
         dtype: Number format of parameters, losses and optimisers.
         hidden_dtype: Number format of the hidden layers in an update; `dtype` if None.
         device: Where everything is kept and computed.
-        scale: How observations become inputs, which `act` and `update` take; it is kept here.
     """
 
     def __init__(
@@ -77,10 +61,9 @@ class Ddpg:
         dtype: torch.dtype = torch.float32,
         hidden_dtype: torch.dtype | None = None,
         device: torch.device | str = 'cpu',
-        scale: RunningScale | None = None,
     ) -> None:
         sizes = (observation_size, action_size)
-        self.actor_config, self.scale = actor, scale
+        self.actor_config = actor
         self._target_smoothing = target_smoothing
         self._smoothing: float | Tensor = target_smoothing
         self._single = agents == 1
@@ -124,8 +107,8 @@ class Ddpg:
         action = self._policy.forward(self._inner(observation.unsqueeze(1)))
         return action.view(*observation.shape[:1], -1).clone()
 
-    def update(self, batch: Batch) -> UpdateStatistics:
-        """Take one gradient step: critic, actor, then both targets.
+    def update(self, batch: Batch) -> tuple[Tensor, Tensor, Tensor]:
+        """Take one gradient step: critic, actor, then both targets; return `METRICS` (agents,).
 
         Moments of units that no longer fire decay to denormal numbers, on which the optimiser
         takes two thirds longer. They are zero here, and nowhere else: the physics may run in
@@ -153,14 +136,14 @@ class Ddpg:
         for optimizer in self._optimizers().values():
             optimizer.set_share(agent, share)
 
-    def _update(self, batch: Batch) -> UpdateStatistics:
+    def _update(self, batch: Batch) -> tuple[Tensor, Tensor, Tensor]:
         critic_loss = self._update_critic(batch)
         actor_loss, mean_q = self._update_actor(batch)
         for critic in self._critics:
             critic.follow(self._smoothing)
         self._actor_target_parameters.flat.lerp_(self.actor_parameters.flat, self._smoothing)
         self._target_actor.refresh()
-        return UpdateStatistics(critic_loss.view(-1), actor_loss.view(-1), mean_q.view(-1))
+        return critic_loss.view(-1), actor_loss.view(-1), mean_q.view(-1)
 
     def _update_critic(self, batch: Batch) -> Tensor:
         """Move every Q(s, a) towards y = r + bootstrap min Q'(s', mu'(s'))."""
@@ -197,27 +180,15 @@ class Ddpg:
 
     def state_dict(self) -> dict[str, Any]:
         """Networks, targets and optimisers."""
-        return (
-            {name: part.flat for name, part in self._stacks().items()}
-            | {name: optimizer.state_dict() for name, optimizer in self._optimizers().items()}
-            | ({'scale': self.scale.state_dict()} if self.scale else {})
-        )
+        parts = {name: part.flat for name, part in self._stacks().items()}
+        return parts | {name: opt.state_dict() for name, opt in self._optimizers().items()}
 
-    def acting_state(self) -> dict[str, Any]:
-        """The actor alone, with the scale of its inputs."""
-        scale = {'scale': self.scale.acting_state()} if self.scale else {}
-        return {'actor': self.actor_parameters.flat, **scale}
-
-    def load_state_dict(self, state: dict[str, Any]) -> None:
-        """Take over what `state_dict` or `acting_state` gave, of networks with the same layers."""
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
+        """Take over what `state_dict` gave, of networks with the same layers."""
         for name, part in self._stacks().items():
-            if name in state:
-                part.flat.copy_(state[name])
-        if self.scale:
-            self.scale.load_state_dict(state['scale'])
+            part.flat.copy_(state[name])
         for name, optimizer in self._optimizers().items():
-            if name in state:
-                optimizer.load_state_dict(state[name])
+            optimizer.load_state_dict(state[name])
         self._refresh()
 
     def put(self, agent: int, single: 'Ddpg') -> None:

@@ -11,8 +11,7 @@ import torch
 from torch import Tensor
 
 from hexapod_agent.algorithms.ddpg.parameters import ParameterStack
-
-NORM_EPSILON = 1e-5  # added to a row's variance
+from hexapod_agent.algorithms.policies import NORM_EPSILON
 
 
 class Cast:

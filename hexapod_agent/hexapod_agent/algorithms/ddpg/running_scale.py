@@ -3,17 +3,20 @@
 
 """Inputs of the networks scaled by the mean and deviation of what a run has observed so far."""
 
+from collections.abc import Mapping
+
 import numpy as np
 import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-LIMIT = 5.0  # deviations; what is farther off counts as so far
+from hexapod_agent.algorithms.policies import SCALED_LIMIT, scaled
+
 _LEAST_DEVIATION = 0.02  # of a number within +-1: one that hardly changes is not blown up
 
 
 class RunningScale:
-    """Scale of observations: (observation - center) gain, within +-`LIMIT`.
+    """Scale of observations: (observation - center) gain, within +-`SCALED_LIMIT`.
 
     It stays as it is during an episode, so that a policy does not change under way.
 
@@ -46,23 +49,20 @@ class RunningScale:
 
     def scaled(self, observation: NDArray[np.float32]) -> NDArray[np.float32]:
         """Return an observation (size,) as the networks take it."""
-        return ((observation - self.center) * self.gain).clip(-LIMIT, LIMIT)
+        return scaled(observation, self.center, self.gain)
 
     def scale(self, observations: Tensor) -> None:
         """Scale observations (..., size) in place."""
         observations.sub_(torch.from_numpy(self.center))
-        observations.mul_(torch.from_numpy(self.gain)).clamp_(-LIMIT, LIMIT)
-
-    def acting_state(self) -> dict[str, Tensor]:
-        """What it takes to scale."""
-        return {'center': torch.from_numpy(self.center), 'gain': torch.from_numpy(self.gain)}
+        observations.mul_(torch.from_numpy(self.gain)).clamp_(-SCALED_LIMIT, SCALED_LIMIT)
 
     def state_dict(self) -> dict[str, Tensor]:
         """What it takes to scale, and to go on."""
-        return self.acting_state() | {'sums': torch.from_numpy(self._sums)}
+        arrays = {'center': self.center, 'gain': self.gain, 'sums': self._sums}
+        return {name: torch.from_numpy(array) for name, array in arrays.items()}
 
-    def load_state_dict(self, state: dict[str, Tensor]) -> None:
-        """Take over what `state_dict` or `acting_state` gave."""
+    def load_state_dict(self, state: Mapping[str, Tensor]) -> None:
+        """Take over what `state_dict` gave, or, to scale alone, its `center` and `gain`."""
         for name, value in self.state_dict().items():
             if name in state:
                 value.copy_(state[name])

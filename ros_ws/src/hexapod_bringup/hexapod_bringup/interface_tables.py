@@ -112,7 +112,7 @@ def node_tables(bag: Path) -> str:
         # In real time the node `play` subscribes by itself: here to all that it ever does.
         agent = Path(directory) / 'agent.pt'
         trainer = Trainer(RunSpec.load().observing(LETTERS), 0)
-        checkpoint.save(agent, trainer, to_resume=False)
+        checkpoint.save_agent(agent, trainer)
         given = [f'plan:={plan}', 'local_workers:=0', f'bag:={bag}']
         given += [f'checkpoint:={agent}', f'play:sync:={REALTIME}']
         begin(['--ros-args', *(word for value in given for word in ('-p', value))])

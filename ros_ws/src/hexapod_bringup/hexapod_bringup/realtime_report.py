@@ -20,6 +20,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from diagnostic_msgs.msg import DiagnosticArray
+from hexapod_agent.deployment import agent_file
 from hexapod_agent.learning import checkpoint
 from hexapod_agent.learning.training import Trainer
 from hexapod_agent.specification.run_spec import RunSpec
@@ -172,8 +173,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         try:
             if options.checkpoint is None:
                 trainer = Trainer(RunSpec.load().observing(options.observations), 1)
-                checkpoint.save(agent, trainer, to_resume=False)
-            checkpoint.load(agent)  # what is wrong with it is better said before anything starts
+                checkpoint.save_agent(agent, trainer)
+            agent_file.load(agent)  # what is wrong with it is better said before anything starts
             heard = measure(options.seconds, agent.resolve(), directory)
         except (ValueError, ReportError) as error:
             parser.error(str(error))

@@ -6,7 +6,8 @@
 import numpy as np
 import pytest
 import torch
-from hexapod_agent.algorithms.ddpg.running_scale import LIMIT, RunningScale
+from hexapod_agent.algorithms.ddpg.running_scale import RunningScale
+from hexapod_agent.algorithms.policies import SCALED_LIMIT
 from hexapod_agent.algorithms.replay import Batch
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.train import train_episode
@@ -44,7 +45,9 @@ def test_scaled_observations_have_mean_zero_and_deviation_one(scale, seen):
 def test_what_is_far_off_counts_as_the_limit(scale):
     scale.refresh()
     far = np.array([9.0, -9.0], np.float32)
-    np.testing.assert_array_equal(scale.scaled(far), np.array([LIMIT, -LIMIT], np.float32))
+    np.testing.assert_array_equal(
+        scale.scaled(far), np.array([SCALED_LIMIT, -SCALED_LIMIT], np.float32)
+    )
 
 
 def test_a_number_that_never_changes_is_not_blown_up():
@@ -65,7 +68,8 @@ def test_a_refresh_without_observations_changes_nothing():
 def test_state_carries_the_scale_and_what_was_seen(scale):
     scale.refresh()
     acting, going_on = RunningScale(2), RunningScale(2)
-    acting.load_state_dict(scale.acting_state())
+    state = scale.state_dict()
+    acting.load_state_dict({name: state[name] for name in ('center', 'gain')})
     going_on.load_state_dict(scale.state_dict())
     for each in (scale, going_on):
         each.add(np.ones(2, np.float32))
@@ -82,10 +86,10 @@ def test_a_trainer_scales_by_the_episodes_before(make_trainer, switched_config):
     trainer = make_trainer(config=switched_config)
     env = HexapodLine(trainer.spec.letters, switched_config)
     train_episode(env, trainer)
-    assert (trainer.agent.scale.gain == 1.0).all()
+    assert (trainer.learner.scale.gain == 1.0).all()
     trainer.begin_episode(1)
     batch = Batch.empty(1, 500, trainer.spec.size, ACTION_SIZE, torch.float32)
-    trainer.sample(batch)
+    trainer.learner.sample(batch)
     deviation = batch.observation[0].std(dim=0)
     assert deviation.median() == pytest.approx(1.0, abs=0.15)
-    assert batch.next_observation.abs().max() <= LIMIT
+    assert batch.next_observation.abs().max() <= SCALED_LIMIT

@@ -1,0 +1,192 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The article's DDPG as a learner: networks, replay buffer and exploration noise of one agent."""
+
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import torch
+from hexapod_sim.task import Outcome
+from numpy.typing import NDArray
+
+from hexapod_agent.algorithms.ddpg.ddpg import METRICS, Ddpg
+from hexapod_agent.algorithms.ddpg.networks import Actor
+from hexapod_agent.algorithms.ddpg.parameters import ParameterStack
+from hexapod_agent.algorithms.ddpg.running_scale import RunningScale
+from hexapod_agent.algorithms.hyperparameters import LearnerConfig
+from hexapod_agent.algorithms.learner import Learner, Metrics, Problem
+from hexapod_agent.algorithms.noise import OrnsteinUhlenbeckNoise
+from hexapod_agent.algorithms.policies import MlpPolicy
+from hexapod_agent.algorithms.replay import Batch, ReplayBuffer
+
+
+class DdpgLearner(Learner):
+    """See `Learner`.
+
+    Attributes:
+        problem: Sizes and lengths.
+        networks: Networks and their update.
+        scale: How observations become the networks' inputs; None if they are.
+        rate_share: Share of the learning rates in this episode.
+    """
+
+    metric_names = METRICS
+
+    def __init__(self, config: LearnerConfig, problem: Problem, seed: int) -> None:
+        ddpg = config.ddpg
+        if ddpg.update_every > problem.episode_steps:
+            raise ValueError(
+                f'learner.ddpg.update_every is {ddpg.update_every}, expected at most '
+                f'task.time_limit_steps, {problem.episode_steps}: nothing would be learned'
+            )
+        if ddpg.buffer_size <= ddpg.batch_size:
+            raise ValueError(
+                f'learner.ddpg.buffer_size is {ddpg.buffer_size}, expected more than '
+                f'learner.ddpg.batch_size, {ddpg.batch_size}: nothing would be learned'
+            )
+        self._config, self.problem = ddpg, problem
+        sizes = problem.observation_size, problem.action_size
+        init, noise, replay = np.random.SeedSequence(seed).spawn(3)
+        self._replay_generator = np.random.default_rng(replay)
+        self._noise_generator = np.random.default_rng(noise)
+        self.networks = Ddpg(
+            *sizes, config.actor, config.critic, ddpg.batch_size, ddpg.target_smoothing,
+            _torch_generator(init), hidden_dtype=hidden_dtype(problem.precision),
+        )  # fmt: skip
+        self.scale = RunningScale(sizes[0]) if ddpg.normalize_observations else None
+        self._policy = policy_of(self.networks.actor_parameters, config, self.scale)
+        self._replay = ReplayBuffer(ddpg.buffer_size, *sizes, ddpg.discount, ddpg.n_step)
+        self._noise = OrnsteinUhlenbeckNoise(
+            config.noise, sizes[1], problem.period_s, self._noise_generator
+        )
+        self.rate_share = 1.0
+        self.output = np.zeros(sizes[1], np.float32)
+        self._action: NDArray[np.float32] | None = None
+        self._step = 0
+
+    def begin_episode(self, rate_share: float) -> None:
+        """Begin an episode: noise at its mean, and inputs scaled by all that was observed."""
+        self.rate_share = rate_share
+        self.networks.set_rate_share(rate_share)
+        if self.scale:
+            self.scale.refresh()
+        self._noise.reset()
+        self._action = None
+
+    def act(self, observation: NDArray[np.float32], explore: bool) -> NDArray[np.float32]:
+        """Choose an action, with Ornstein-Uhlenbeck noise if it is to explore."""
+        self.output = self._policy(observation)
+        return self.explore(self.output) if explore else self.output
+
+    def explore(self, output: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Return the action that is taken where the policy put out (action size,)."""
+        self.output = output
+        self._action = (output + self._noise.sample()).clip(-1.0, 1.0).astype(np.float32)
+        return self._action
+
+    def store(self, observation: NDArray[np.float32], outcome: Outcome) -> None:
+        """Add the transition that ends in `observation`, or begin an episode with it."""
+        self._step = outcome.step
+        if self.scale:
+            self.scale.add(observation)
+        if self._action is None:
+            self._replay.begin(observation)
+            return
+        reward = outcome.reward * self._config.reward_scale
+        self._replay.add(self._action, reward, observation, outcome.terminated)
+
+    @property
+    def due(self) -> int:
+        """Gradient steps to take now: a group of them, where it is time and there is a batch."""
+        config = self._config
+        is_time = (self._step + 1) % config.update_every == 0
+        return config.group_size if is_time and len(self._replay) >= config.batch_size else 0
+
+    @cached_property
+    def _group(self) -> tuple[Batch, list[Batch]]:
+        """The batches of a group of updates, all in all and one by one."""
+        config, problem = self._config, self.problem
+        sizes = (config.batch_size, problem.observation_size, problem.action_size)
+        drawn = Batch.empty(config.group_size, *sizes, torch.float32)
+        return drawn, [drawn.inner(number) for number in range(config.group_size)]
+
+    def update(self) -> Metrics:
+        """Take a group of gradient steps where it is time for one."""
+        if not self.due:
+            return {}
+        drawn, batches = self._group
+        self.sample(drawn)
+        seen = [[float(value) for value in self.networks.update(batch)] for batch in batches]
+        return dict(zip(METRICS, np.array(seen).T, strict=True))
+
+    def sample(self, batch: Batch) -> None:
+        """Draw the transitions of the next updates, as many as the batches are, and scale them."""
+        self._replay.sample(self._replay_generator, batch)
+        if self.scale:
+            self.scale.scale(batch.observation)
+            self.scale.scale(batch.next_observation)
+
+    def policy(self) -> MlpPolicy:
+        """Return the actor, on its own memory."""
+        return self._policy
+
+    def state_dict(self) -> dict[str, Any]:
+        """Return networks, optimisers, replay buffer and random states."""
+        scale = {'scale': self.scale.state_dict()} if self.scale else {}
+        return {
+            'agent': self.networks.state_dict() | scale,
+            'replay_generator': self._replay_generator.bit_generator.state,
+            'noise_generator': self._noise_generator.bit_generator.state,
+            'noise_sigma': self._noise.sigma,
+            'replay': self._replay.state(),
+        }
+
+    def load_state_dict(self, state: Mapping[str, Any]) -> None:
+        """Take over what `state_dict` gave, of a learner with the same configuration."""
+        self.networks.load_state_dict(state['agent'])
+        if self.scale:
+            self.scale.load_state_dict(state['agent']['scale'])
+        self._replay_generator.bit_generator.state = state['replay_generator']
+        self._noise_generator.bit_generator.state = state['noise_generator']
+        self._noise.sigma = state['noise_sigma']
+        self._replay.restore(state['replay'])
+
+
+def policy_of(
+    parameters: ParameterStack, config: LearnerConfig, scale: RunningScale | None
+) -> MlpPolicy:
+    """Make a policy on the memory of the actor of a stack of one."""
+    arrays = {name: array[0].numpy() for name, array in parameters.arrays.items()}
+    layers = [name.removesuffix('.weight') for name in arrays if name.endswith('.weight')]
+    return MlpPolicy(
+        tuple((arrays[f'{layer}.weight'], arrays[f'{layer}.bias']) for layer in layers),
+        config.actor.layer_norm,
+        None if scale is None else (scale.center, scale.gain),
+    )
+
+
+def policy_of_before(
+    config: LearnerConfig, observation_size: int, action_size: int, state: Mapping[str, Any]
+) -> MlpPolicy:
+    """Make a policy of the state that files held before they held a policy."""
+    shapes = Actor.shapes(observation_size, action_size, config.actor.hidden)
+    parameters = ParameterStack(shapes)
+    parameters.flat.copy_(state['actor'])
+    scale = None
+    if config.ddpg.normalize_observations:
+        scale = RunningScale(observation_size)
+        scale.load_state_dict(state['scale'])
+    return policy_of(parameters, config, scale)
+
+
+def hidden_dtype(precision: str) -> torch.dtype | None:
+    """Return the number format of an update's hidden layers; None for that of the parameters."""
+    return torch.bfloat16 if precision == 'bfloat16' else None
+
+
+def _torch_generator(sequence: np.random.SeedSequence) -> torch.Generator:
+    """Seed a torch generator from a stream of numpy's."""
+    return torch.Generator().manual_seed(int(sequence.generate_state(1, np.uint64)[0]))

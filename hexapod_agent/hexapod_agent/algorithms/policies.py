@@ -1,0 +1,87 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Policies: what algorithms learn, and baselines that observe nothing."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from hexapod_cpg.mapping import ACTION_SIZE
+from numpy.typing import NDArray
+
+Array = NDArray[np.float32]
+Policy = Callable[[Array], Array]
+
+NORM_EPSILON = 1e-5  # added to a row's variance
+SCALED_LIMIT = 5.0  # standard deviations; an observation farther off counts as so far
+
+
+def constant_policy(action: Array) -> Policy:
+    """Make an agent that always does the same; zeros are a straight walk."""
+    return lambda observation: action
+
+
+def random_policy(seed: int) -> Policy:
+    """Make an agent that draws every action from U(-1, 1)."""
+    generator = np.random.default_rng(seed)
+    return lambda observation: generator.uniform(-1.0, 1.0, ACTION_SIZE).astype(np.float32)
+
+
+@dataclass(frozen=True)
+class MlpPolicy:
+    """Affine layers with ReLU between them and tanh at the end; its arrays may be a learner's.
+
+    It computes in numpy: for one observation torch takes several times as long, and rounds as the
+    precision of the updates says.
+
+    Attributes:
+        layers: Weight (outputs, inputs) and bias (outputs,) of each layer.
+        layer_norm: Whether each hidden layer is normalised to mean 0 and variance 1 before its
+            ReLU.
+        scale: Center and gain (observation size,) of the inputs, (observation - center) gain
+            within +-`SCALED_LIMIT`; None if observations are the inputs.
+    """
+
+    layers: tuple[tuple[Array, Array], ...]
+    layer_norm: bool = False
+    scale: tuple[Array, Array] | None = None
+
+    def __call__(self, observation: Array) -> Array:
+        """Return the action for an observation."""
+        features = observation
+        if self.scale is not None:
+            features = scaled(features, *self.scale)
+        *hidden, (weight_out, bias_out) = self.layers
+        for weight, bias in hidden:
+            features = weight @ features + bias
+            if self.layer_norm:
+                features -= features.mean()
+                features /= np.sqrt(features @ features / features.size + NORM_EPSILON)
+            features = np.maximum(features, 0.0)
+        action: Array = np.tanh(weight_out @ features + bias_out)
+        return action
+
+    def to_mapping(self) -> dict[str, Any]:
+        """Return what it is made of, as `from_mapping` takes it."""
+        return {
+            'layers': [list(layer) for layer in self.layers],
+            'layer_norm': self.layer_norm,
+            'scale': None if self.scale is None else list(self.scale),
+        }
+
+    @classmethod
+    def from_mapping(cls, content: Mapping[str, Any]) -> 'MlpPolicy':
+        """Make a policy of what `to_mapping` gave."""
+        scale = content['scale']
+        return cls(
+            tuple((weight, bias) for weight, bias in content['layers']),
+            content['layer_norm'],
+            None if scale is None else (scale[0], scale[1]),
+        )
+
+
+def scaled(observation: Array, center: Array, gain: Array) -> Array:
+    """Return an observation as the input of networks that scale it."""
+    return ((observation - center) * gain).clip(-SCALED_LIMIT, SCALED_LIMIT)
