@@ -83,7 +83,7 @@ def _letters(label: str, factors: str) -> str:
     if unknown or len(set(given)) < len(given):
         raise ValueError(
             f'set {label!r}: expected letters of {factors}, each once, or '
-            f'{_EMPTY[1]} for no sensor'
+            f'{_EMPTY[1]} for none of them'
         )
     return ''.join(factor for factor in factors if factor in given)
 

@@ -173,7 +173,13 @@ class Treatments:
         for factor, level in pairs:
             _nest(changes, factor.key.split('.'), factor.value(level))
         source = ', '.join(f'{each.letter} {each.text(level)}' for each, level in pairs)
-        return self.base.changed(changes, f'factors {source}')
+        try:
+            return self.base.changed(changes, f'factors {source}')
+        except ConfigError:
+            for factor, level in pairs:  # one of them may be at fault by itself
+                where = f'factor {factor.name!r}'
+                self.base.with_value(factor.key, factor.value(level), where)
+            raise
 
 
 def factors_in(metadata: Mapping[str, str]) -> tuple[Factor, ...] | None:

@@ -96,7 +96,7 @@ def _add_confirm(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--sets',
         metavar='CD,CE',
-        help='sets to confirm, none for no sensor; by default those that `analyze` puts first',
+        help='sets to confirm by the letters at the high level, none for none of them; by default those that `analyze` puts first',
     )
     parser.add_argument(
         '--replicates',
@@ -174,7 +174,9 @@ def _add_hours(parser: argparse.ArgumentParser) -> None:
         metavar='N',
         help=f'wanted length of a training (default {FULL_TRAINING})',
     )
-    parser.add_argument('--factors', type=_COUNT, default=7, metavar='K', help='sensor groups (7)')
+    parser.add_argument(
+        '--factors', type=_COUNT, default=7, metavar='K', help='how many factors (7)'
+    )
     parser.add_argument('--sigma', type=number(gt=0), metavar='X', help='SD of one run, if known')
 
 
@@ -188,8 +190,9 @@ def _add_design(parser: CommandLine) -> None:
         '--factors',
         default='7',
         metavar='K|FILE.yaml',
-        help='how many sensors, or their letters (7); or a file of factors, each an entry with '
-        'name, key of the specification, low, high, and perhaps device and letter',
+        help='how many sensors, or their letters (7); or a file of factors of any kind, a list of '
+        'entries with name, key of the specification, low, high, and perhaps device and letter '
+        '(docs/factors.yaml is one)',
     )
     add_spec_options(parser)
 

@@ -94,7 +94,7 @@ def options(
 
     Args:
         budget: The machine time.
-        factors: How many sensor groups are in question.
+        factors: How many factors are in question.
         episodes: The wanted length of each training run.
         target: The effect that is small enough, in standard deviations of a run.
 

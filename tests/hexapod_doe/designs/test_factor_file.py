@@ -4,6 +4,7 @@
 """A factor is any key of a run's specification; a file that cannot be run gives its one line."""
 
 import json
+from pathlib import Path
 
 import pytest
 from hexapod_agent.specification.run_spec import RunSpec
@@ -162,3 +163,16 @@ def test_a_malformed_file_gives_one_line_and_no_plan(tmp_path, capsys, text, mes
     assert message in error
     assert error.count('\n') == 1
     assert not (tmp_path / 'new').exists()
+
+
+def test_the_example_plans_eight_factors_in_sixteen_rows(tmp_path, capsys):
+    example = Path(__file__).resolve().parents[3] / 'docs' / 'factors.yaml'
+    out = tmp_path / 'plan.csv'
+    plan.main(['--factors', str(example), '--design', 'sixteenth', '--out', str(out)])
+    printed = capsys.readouterr().out
+    assert 'C  body orientation off → on  (observations.C)' in printed
+    assert 'G  IMU noise 0 → 0.05  (sensors.imu_data.noise)' in printed
+    assert 'resolution IV' in printed
+    rows = read_rows(out)
+    assert len({row.spec.to_text() for row in rows}) == len(rows) == 16
+    assert {row.spec.sensors['imu_data'].noise for row in rows} == {0.0, 0.05}
