@@ -172,14 +172,23 @@ class Treatments:
         changes: dict[str, Any] = {}
         for factor, level in pairs:
             _nest(changes, factor.key.split('.'), factor.value(level))
-        source = ', '.join(f'{each.letter} {each.text(level)}' for each, level in pairs)
+        source = f'factors {", ".join(f"{each.letter} {each.text(at)}" for each, at in pairs)}'
         try:
-            return self.base.changed(changes, f'factors {source}')
-        except ConfigError:
+            return self.base.changed(changes, source)
+        except ConfigError as error:
             for factor, level in pairs:  # one of them may be at fault by itself
-                where = f'factor {factor.name!r}'
-                self.base.with_value(factor.key, factor.value(level), where)
+                fault = self._fault_alone(factor, level)
+                if fault and str(error) == f'{source}: {fault}':
+                    raise ConfigError(f'factor {factor.name!r}: {fault}') from error
             raise
+
+    def _fault_alone(self, factor: Factor, level: float) -> str:
+        """Return why the base cannot have one level; empty if it can."""
+        try:
+            self.base.with_value(factor.key, factor.value(level), '')
+        except ConfigError as error:
+            return str(error).removeprefix(': ')
+        return ''
 
 
 def factors_in(metadata: Mapping[str, str]) -> tuple[Factor, ...] | None:
