@@ -229,11 +229,8 @@ def _finish(plan: Plan, levels: np.ndarray, out: Path) -> None:
     settings = plan.settings
     assert settings is not None  # made here, not read
     if not plan.treatments.default:
-        print(
-            '\n'.join(
-                f'{each.letter}  {each.change}  ({each.key})' for each in plan.treatments.factors
-            )
-        )
+        for factor in plan.treatments.factors:
+            print(f'{factor.letter}  {factor.change}  ({factor.key})')
     print(f'{len(plan.rows)} runs: {settings.cases} cases x {settings.replicates} -> {out}')
     if settings.resolution is not None:
         _print_words(settings.defining_relation, settings.resolution)

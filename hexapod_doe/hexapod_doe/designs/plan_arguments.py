@@ -96,7 +96,8 @@ def _add_confirm(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--sets',
         metavar='CD,CE',
-        help='sets to confirm by the letters at the high level, none for none of them; by default those that `analyze` puts first',
+        help='sets to confirm, by their letters, none for the one without any; by default those '
+        'that `analyze` puts first',
     )
     parser.add_argument(
         '--replicates',

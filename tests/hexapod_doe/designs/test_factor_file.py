@@ -147,6 +147,14 @@ OTHER = '\n- {name: b, key: task.height_weight, low: 0, high: 1}'
             '- {name: a, key: training.episodes, low: 10, high: 20}' + OTHER,
             "factor 'a': key training.episodes is the same for all runs of a campaign",
         ),
+        (
+            '- {name: a, key: sensors.foot_contacts.noise, low: 0, high: 7}' + OTHER,
+            "factor 'a': sensors.foot_contacts.noise is 7.0, expected at most",
+        ),
+        (
+            '- {name: a, key: sensors.compass.noise, low: 0, high: 1}' + OTHER,
+            "factor 'a': unknown key 'sensors.compass.noise', expected one of sensors.joint_states",
+        ),
         (  # each level alone goes with the base, two of them not with one another
             '- {name: a, key: learner.ddpg.update_every, low: 10, high: 20}\n'
             '- {name: b, key: learner.ddpg.update_ratio, low: 0.5, high: 0.05}'
