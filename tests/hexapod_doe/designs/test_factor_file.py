@@ -19,7 +19,6 @@ GOOD = """
 - {name: yaw share, key: task.yaw_share, low: 0, high: 1}
 - {name: learning rate, key: learner.actor.learning_rate, low: 1e-4, high: 2.0e-4}
 """
-ENTRY = '{{name: yaw share, key: task.yaw_share, low: {low}, high: {high}}}'
 
 
 def written(tmp_path, text, *options):
@@ -148,12 +147,13 @@ OTHER = '\n- {name: b, key: task.height_weight, low: 0, high: 1}'
             "factor 'a': key training.episodes is the same for all runs of a campaign",
         ),
         (
-            '- {name: a, key: sensors.foot_contacts.noise, low: 0, high: 7}' + OTHER,
+            '- {name: a, key: sensors.foot_contacts.noise, low: 0, high: 7}\n'
+            '- {name: c, key: task.yaw_share, low: 0, high: 1}' + OTHER,
             "factor 'a': sensors.foot_contacts.noise is 7.0, expected at most",
         ),
         (
             '- {name: a, key: sensors.compass.noise, low: 0, high: 1}' + OTHER,
-            "factor 'a': unknown key 'sensors.compass.noise', expected one of sensors.joint_states",
+            "factor 'a': unknown key 'sensors.compass.noise', expected one of sensors.",
         ),
         (  # each level alone goes with the base, two of them not with one another
             '- {name: a, key: learner.ddpg.update_every, low: 10, high: 20}\n'
