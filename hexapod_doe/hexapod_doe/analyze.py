@@ -23,7 +23,7 @@ from hexapod_doe.records.results import Analysis
 from hexapod_doe.reporting.report import write_report
 from hexapod_doe.reporting.words import set_text
 from hexapod_doe.stages import stage
-from hexapod_doe.tables.bag_response import DEFAULT_RESPONSE
+from hexapod_doe.tables.bag_response import ARTICLE_RESPONSE
 from hexapod_doe.tables.bag_table import bag_responses, confirmation_runs, plan_rule, read_bags
 from hexapod_doe.tables.csv_table import read_csv, read_responses
 from hexapod_doe.tables.table import RunTable
@@ -80,7 +80,7 @@ def _tables(args: argparse.Namespace) -> list[RunTable]:
                 raise TableError(
                     f'{path}: is a file; give bags by their folder, and a table by --table'
                 )
-        response = args.response or DEFAULT_RESPONSE
+        response = args.response or (ARTICLE_RESPONSE if args.article else None)
         # The article knows no blocks, whatever the plan says.
         blocks = '' if args.article and args.blocks is None else args.blocks
         return read_bags(args.bags, args.factors, response, blocks)
@@ -95,7 +95,7 @@ def _confirmation_runs(
     args: argparse.Namespace, tables: Sequence[RunTable]
 ) -> dict[str, list[float]]:
     """Return the responses of the confirmation runs by label, those below a campaign too."""
-    response = args.response or DEFAULT_RESPONSE
+    response = args.response or tables[0].response
     like = tables[0].settings
     if not args.confirm:
         return confirmation_runs(args.bags, response, like) if args.bags else {}

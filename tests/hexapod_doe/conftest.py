@@ -18,6 +18,7 @@ from hexapod_doe.bags.rosbag2 import Topic
 PERIOD_NS = 25_000_000
 EPISODE_NS = 15_000_000_000
 RESULTS = Topic('/w0/episode_result', 'hexapod_interfaces/msg/EpisodeResult')
+EVALUATION = Topic('/w0/evaluation_result', RESULTS.type_name)
 JOINTS = Topic('/w0/joint_states', 'sensor_msgs/msg/JointState')
 
 
@@ -58,8 +59,10 @@ def serialised_joints(stamp_ns: int) -> bytes:
     return serialize_message(message)
 
 
-def fill(writer: BagWriter, episodes: int, samples: int = 0, gain: float = 1.0) -> None:
-    """Write results, and before each of them some joint states."""
+def fill(
+    writer: BagWriter, episodes: int, samples: int = 0, gain: float = 1.0, evaluation: int = 0
+) -> None:
+    """Write results, before each of them some joint states, and those of an evaluation."""
     writer.add_topic(JOINTS)
     writer.add_topic(RESULTS)
     for episode in range(episodes):
@@ -69,6 +72,10 @@ def fill(writer: BagWriter, episodes: int, samples: int = 0, gain: float = 1.0) 
         end = (episode + 1) * EPISODE_NS
         writer.write(RESULTS.name, serialised_result(episode, gain=gain), end)
         writer.flush()
+    for start in range(evaluation):
+        writer.add_topic(EVALUATION)
+        end = (episodes + start + 1) * EPISODE_NS
+        writer.write(EVALUATION.name, serialised_result(start, gain=gain), end)
 
 
 @pytest.fixture
@@ -92,11 +99,13 @@ def write_bag(tmp_path: Path) -> Callable[..., Path]:
         episodes: int = 3,
         samples: int = 4,
         gain: float = 1.0,
+        evaluation: int = 0,
         **metadata: str,
     ) -> Path:
         described = {'run_id': 'r1', 'status': 'complete', 'episodes': str(episodes)}
+        described |= {'evaluation': str(evaluation)} if evaluation else {}
         with BagWriter(tmp_path / name, described | metadata) as writer:
-            fill(writer, episodes, samples, gain)
+            fill(writer, episodes, samples, gain, evaluation)
         return tmp_path / name
 
     return write

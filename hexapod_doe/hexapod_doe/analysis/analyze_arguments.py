@@ -8,7 +8,7 @@ import argparse
 from hexapod_sim.command_line import CommandLine, add_options, folder, path
 
 from hexapod_doe.records.options import Options
-from hexapod_doe.tables.bag_response import DEFAULT_RESPONSE, RESPONSES
+from hexapod_doe.tables.bag_response import ARTICLE_RESPONSE, EVALUATION_RESPONSE, RESPONSES
 
 DESCRIPTION = "Analyse a campaign's bags, or any table, and write a report and analysis.json."
 _MODEL = (
@@ -29,7 +29,8 @@ def build_parser() -> CommandLine:
         '--response',
         metavar='NAME',
         help=f'column of the tables; of bags {", ".join(RESPONSES)} or a reward term, term_NAME '
-        f'(default of bags {DEFAULT_RESPONSE})',
+        f'or evaluation_term_NAME (default of bags {EVALUATION_RESPONSE}, or {ARTICLE_RESPONSE} '
+        'where they have none or with --article)',
     )
     source.add_argument(
         '--factors',

@@ -12,7 +12,9 @@ from hexapod_doe.reporting.tables import Table
 _OF_AN_EPISODE = {
     'episode_return': 'sum of the rewards of an episode, exploration noise included',
     'average_return': 'mean of the last returns, over at most `training.window` episodes',
-    'final_average_reward': 'average_return after the last episode: the response of a run',
+    'final_average_reward': 'average_return after the last episode: the article’s response',
+    'evaluation_return': 'mean return without noise, after the training, from starts that all '
+    'runs share: the response where the bags have it',
     'steps': 'control periods until the episode ended, 600 for a whole one of 15 s',
     'terminated': 'whether it ended by a failure; `cause` says which, or time_limit',
     'term_velocity': 'speed along the line',

@@ -3,7 +3,7 @@
 
 """Numbers that a training run can be judged by: what `analyze --response` offers for bags."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 import numpy as np
 import pandas as pd
@@ -12,8 +12,10 @@ from hexapod_doe.bags.run_record import RunRecord
 from hexapod_doe.errors import AnalysisError, BagError
 from hexapod_doe.fitting.estimands import estimand
 
-DEFAULT_RESPONSE = 'final_average_reward'
-TERM_PREFIX = 'term_'
+ARTICLE_RESPONSE = 'final_average_reward'
+EVALUATION_RESPONSE = 'evaluation_return'
+TERM_PREFIX, EVALUATION_PREFIX = 'term_', 'evaluation_'
+_NAMED = 3
 
 
 def _final_average(run: RunRecord) -> float:
@@ -39,8 +41,20 @@ def _mean_return(run: RunRecord) -> float:
     return float(run.episodes['episode_return'].mean())
 
 
+def _evaluation_return(run: RunRecord) -> float:
+    """Mean return of the evaluation, as the agent kept it."""
+    return float(_evaluation(run)['average_return'].iloc[-1])
+
+
+def _evaluation_falls(run: RunRecord) -> float:
+    """Episodes of the evaluation that ended by a failure."""
+    return float(_evaluation(run)['terminated'].sum())
+
+
 RESPONSES: Mapping[str, Callable[[RunRecord], float]] = {
-    DEFAULT_RESPONSE: _final_average,
+    EVALUATION_RESPONSE: _evaluation_return,
+    'evaluation_falls': _evaluation_falls,
+    ARTICLE_RESPONSE: _final_average,
     'best_average_reward': _best_average,
     'final_iqm_reward': _final_iqm,
     'mean_return': _mean_return,
@@ -48,13 +62,33 @@ RESPONSES: Mapping[str, Callable[[RunRecord], float]] = {
 """Responses by name. A reward term, such as `term_velocity`, is one as well: see `response_of`."""
 
 
-def response_of(run: RunRecord, name: str = DEFAULT_RESPONSE) -> float:
+def default_response(runs: Iterable[RunRecord]) -> str:
+    """Return what runs are judged by where nothing else is asked for.
+
+    That is their evaluation, or what the article judges by if none has one.
+
+    Raises:
+        AnalysisError: Some have one, and others have not.
+    """
+    runs = list(runs)
+    without = [run.run_id for run in runs if run.evaluation.empty]
+    if without and len(without) < len(runs):
+        more = f' and {len(without) - _NAMED} more' if len(without) > _NAMED else ''
+        raise AnalysisError(
+            f'{len(without)} of {len(runs)} runs have no evaluation '
+            f'({", ".join(without[:_NAMED])}{more}), expected one response of all: give '
+            f'--response {ARTICLE_RESPONSE}, which each has, or have these trained anew'
+        )
+    return ARTICLE_RESPONSE if without else EVALUATION_RESPONSE
+
+
+def response_of(run: RunRecord, name: str) -> float:
     """Return a run's response.
 
     Args:
         run: What its bag holds.
         name: A key of `RESPONSES`, or a reward term, of which the mean over the last `window`
-            episodes is taken.
+            episodes is taken, or, after `evaluation_`, over those of the evaluation.
 
     Raises:
         AnalysisError: There is no such response.
@@ -63,10 +97,22 @@ def response_of(run: RunRecord, name: str = DEFAULT_RESPONSE) -> float:
     if name in RESPONSES:
         return RESPONSES[name](run)
     terms = [str(column) for column in run.episodes if str(column).startswith(TERM_PREFIX)]
-    if name not in terms:
-        known = ', '.join([*RESPONSES, *terms])
-        raise AnalysisError(f'response {name!r}: run {run.run_id} has {known}')
-    return float(_last(run, name).mean())
+    if name in terms:
+        return float(_last(run, name).mean())
+    judged = {f'{EVALUATION_PREFIX}{term}': term for term in terms}
+    if name in judged:
+        return float(_evaluation(run)[judged[name]].mean())
+    known = ', '.join([*RESPONSES, *terms, *judged])
+    raise AnalysisError(f'response {name!r}: run {run.run_id} has {known}')
+
+
+def _evaluation(run: RunRecord) -> pd.DataFrame:
+    if run.evaluation.empty:
+        raise AnalysisError(
+            f'run {run.run_id} has no evaluation, expected one: give '
+            f'--response {ARTICLE_RESPONSE}, or have it trained anew'
+        )
+    return run.evaluation
 
 
 def _last(run: RunRecord, column: str) -> pd.Series:

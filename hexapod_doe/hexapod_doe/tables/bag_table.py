@@ -19,7 +19,7 @@ from hexapod_doe.errors import BagError, TableError
 from hexapod_doe.fitting.model import EMPTY_SET
 from hexapod_doe.tables.bag_factors import factors_of, known, set_of, shared_settings
 from hexapod_doe.tables.bag_groups import Group, Part, group_runs, sound_bags
-from hexapod_doe.tables.bag_response import DEFAULT_RESPONSE, response_of
+from hexapod_doe.tables.bag_response import default_response, response_of
 from hexapod_doe.tables.table import (
     BLOCK,
     RESPONSE,
@@ -37,7 +37,7 @@ _NAMED = 3
 def read_bags(
     paths: Sequence[Path],
     factors: Sequence[str] | None = None,
-    response: str = DEFAULT_RESPONSE,
+    response: str | None = None,
     blocks: str | None = None,
 ) -> list[RunTable]:
     """Read all complete bags below some directories; each campaign is one table.
@@ -48,7 +48,8 @@ def read_bags(
     Args:
         paths: Directories of campaigns or bags.
         factors: Letters of the factors to analyse; by default those of the plan, or all sensors.
-        response: What a run is judged by, see `bag_response`.
+        response: What a run is judged by, see `bag_response`; None for the evaluation, or what
+            the article judges by where no run has one.
         blocks: Key of the metadata that tells the blocks apart, such as `seed`; empty for none,
             None for what the campaign's plan says, if there are two or more yet.
 
@@ -72,6 +73,8 @@ def read_bags(
         )
     if not groups:
         raise TableError(f'{source}: no run to analyse. {" ".join(found)}')
+    runs = [run for group in groups for run in group.runs]
+    response = default_response(runs) if response is None else response
     return [
         _table(group, source, (*skipped, *found), factors_of(group, factors), response, blocks)
         for group in groups
@@ -89,7 +92,7 @@ def plan_rule(paths: Sequence[Path]) -> Confirmation:
 
 
 def bag_responses(
-    path: Path, response: str = DEFAULT_RESPONSE, like: Mapping[str, str] | None = None
+    path: Path, response: str, like: Mapping[str, str] | None = None
 ) -> dict[str, list[float]]:
     """Return the responses of the complete runs below a directory, by their observations.
 
@@ -107,7 +110,7 @@ def bag_responses(
 
 
 def confirmation_runs(
-    paths: Sequence[Path], response: str = DEFAULT_RESPONSE, like: Mapping[str, str] | None = None
+    paths: Sequence[Path], response: str, like: Mapping[str, str] | None = None
 ) -> dict[str, list[float]]:
     """Return the responses of runs below some directories whose plan confirms a choice.
 

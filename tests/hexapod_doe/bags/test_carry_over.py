@@ -88,6 +88,37 @@ def test_newest_cut_that_holds_enough_is_found(tmp_path, record):
     assert find_cut(tmp_path / 'r2', 'r1', 1) is None
 
 
+def test_results_of_an_evaluation_are_begun_again(tmp_path, record, samples):
+    bag = tmp_path / 'r1'
+    evaluation = Topic('/w0/evaluation_result', samples.results.type_name)
+
+    def judge(recording: Recording, starts: int) -> None:
+        for start in range(starts):
+            recording.add_result(evaluation, samples.serialised_result(start), start, 600)
+
+    cut = recording_at(bag, evaluation='2')
+    record(cut, range(3))
+    judge(cut, 1)
+    with pytest.raises(BagError, match='1 of 2 results of its evaluation recorded'):
+        cut.finish(3, {})
+    set_aside(bag)
+    recording = recording_at(bag, evaluation='2')
+    carry_over(recording, find_cut(bag, 'r1', 2), 2, '/w0/episode_result')
+    record(recording, range(2, 3))
+    judge(recording, 2)
+    verify(recording.finish(3, {}))
+    assert list(read_run(bag).evaluation.index) == [0, 1]
+
+
+def test_a_cut_of_another_version_cannot_go_on(tmp_path, record, monkeypatch):
+    bag = tmp_path / 'r1'
+    record(recording_at(bag), range(3))
+    set_aside(bag, takeover=True)
+    assert find_cut(bag, 'r1', 2) is not None
+    monkeypatch.setattr('hexapod_doe.bags.carry_over.definition', lambda name: 'bool other')
+    assert find_cut(bag, 'r1', 2) is None
+
+
 @pytest.mark.parametrize('share', [0.0, 0.3, 0.6, 0.95])
 def test_file_cut_anywhere_gives_its_first_episodes(tmp_path, record, share):
     bag = tmp_path / 'r1'

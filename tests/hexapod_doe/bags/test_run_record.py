@@ -9,9 +9,11 @@ import subprocess
 import sys
 
 import pytest
+from hexapod_doe.bags.bag_state import sound_metadata
 from hexapod_doe.bags.bag_writer import BagWriter
 from hexapod_doe.bags.run_record import find_bags, is_complete, read_run, read_topic
-from hexapod_doe.errors import BagError
+from hexapod_doe.bags.verify import verify
+from hexapod_doe.errors import BagError, UnfinishedError
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
@@ -156,6 +158,23 @@ def test_complete_means_status_and_every_episode(write_bag, tmp_path):
     assert is_complete(write_bag('whole'))
     assert not is_complete(write_bag('short', episodes=3, status='recording'))
     assert not is_complete(tmp_path / 'nowhere')
+
+
+def test_an_evaluation_comes_back_apart_from_the_episodes(write_bag):
+    bag = write_bag(evaluation=2)
+    verify(bag)
+    run = read_run(bag)
+    assert list(run.evaluation['episode_return']) == [0.0, 10.0]
+    assert len(run.episodes) == 3
+    assert read_run(write_bag('plain')).evaluation.empty
+
+
+def test_a_bag_that_lacks_a_part_of_its_evaluation_is_not_complete(write_bag, monkeypatch):
+    bag = write_bag(evaluation=2)
+    assert is_complete(bag)
+    monkeypatch.setattr('hexapod_doe.bags.bag_state.evaluation_of', lambda metadata: 3)
+    with pytest.raises(UnfinishedError, match='2 results of its evaluation, expected 3'):
+        sound_metadata(bag)
 
 
 def test_find_bags_leaves_out_what_is_unfinished(write_bag, tmp_path):

@@ -1,11 +1,15 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
+"""What a run is judged by, of its bag's episodes and its evaluation's."""
+
+from dataclasses import replace
+
 import pandas as pd
 import pytest
 from hexapod_doe.bags.run_record import RunRecord
 from hexapod_doe.errors import AnalysisError, BagError
-from hexapod_doe.tables.bag_response import RESPONSES, response_of
+from hexapod_doe.tables.bag_response import RESPONSES, default_response, response_of
 
 RETURNS = [0.0, 12.0, 6.0, 3.0, 1.0, 8.0]
 
@@ -19,6 +23,45 @@ def run(window: int | None) -> RunRecord:
         }
     )
     return RunRecord('r1', {} if window is None else {'window': str(window)}, episodes)
+
+
+def judged(run_id: str = 'r1') -> RunRecord:
+    """A run with an evaluation of three episodes."""
+    evaluation = pd.DataFrame(
+        {
+            'episode_return': [3.0, 4.0, 8.0],
+            'average_return': [3.0, 3.5, 5.0],
+            'term_velocity': [1.0, 2.0, 6.0],
+            'terminated': [False, True, True],
+        }
+    )
+    return replace(run(4), run_id=run_id, evaluation=evaluation)
+
+
+@pytest.mark.parametrize(
+    ('name', 'expected'),
+    [
+        ('evaluation_return', 5.0),
+        ('evaluation_falls', 2.0),
+        ('evaluation_term_velocity', 3.0),
+        ('term_velocity', 9.0),  # of the training's last four
+    ],
+)
+def test_responses_of_an_evaluation(name: str, expected: float) -> None:
+    assert response_of(judged(), name) == expected
+
+
+def test_a_run_without_an_evaluation_has_no_such_response() -> None:
+    for name in ('evaluation_return', 'evaluation_term_velocity'):
+        with pytest.raises(AnalysisError, match=r'r1 has no evaluation.*--response final_average'):
+            response_of(run(4), name)
+
+
+def test_the_evaluation_is_the_default_where_each_run_has_one() -> None:
+    assert default_response([judged(), judged('r2')]) == 'evaluation_return'
+    assert default_response([run(4), run(4)]) == 'final_average_reward'
+    with pytest.raises(AnalysisError, match=r'1 of 2 runs have no evaluation \(r1\).*--response'):
+        default_response([run(4), judged('r2')])
 
 
 @pytest.mark.parametrize(
@@ -47,6 +90,6 @@ def test_an_unknown_response_is_an_error_that_names_the_known_ones() -> None:
 
 
 def test_a_window_that_the_bag_lacks_is_not_guessed() -> None:
-    assert response_of(run(None)) == 4.5
+    assert response_of(run(None), 'final_average_reward') == 4.5
     with pytest.raises(BagError, match='run r1: its metadata lacks the window'):
         response_of(run(None), 'best_average_reward')

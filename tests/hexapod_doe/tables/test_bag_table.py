@@ -56,6 +56,38 @@ def test_a_run_is_judged_by_what_the_user_names(campaign: Path) -> None:
     assert (table.values == 10.0 * table.rows['case']).all()
 
 
+def write_runs(write_bag: WriteBag, folder: str, name: str, evaluation: int) -> None:
+    """Write bags of a run without A, and of one with it."""
+    for gain, letters in enumerate(('', 'A'), start=1):
+        described = {'run_id': f'{name}{letters}', 'observations': letters}
+        path = f'{folder}/{name}{letters}'
+        write_bag(path, samples=0, gain=gain, evaluation=evaluation, **described)
+
+
+def test_runs_are_judged_by_their_evaluation_where_each_has_one(
+    tmp_path: Path, write_bag: WriteBag, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_runs(write_bag, 'judged', 'r', evaluation=2)
+    (table,) = read_bags([tmp_path / 'judged'], ['A'])
+    assert table.response == 'evaluation_return'
+    assert sorted(table.values) == [5.0, 10.0]  # 5·1·gain, after start 1
+    write_runs(write_bag, 'judged', 'plain', evaluation=0)
+    line = [str(tmp_path / 'judged'), '--factors', 'A', '--out', str(tmp_path / 'report')]
+    assert analyze.main(line) == 2
+    assert '2 of 4 runs have no evaluation' in capsys.readouterr().err
+    (table,) = read_bags([tmp_path / 'judged'], ['A'], 'final_average_reward')
+    assert len(table.rows) == 4
+
+
+def test_evaluations_of_other_lengths_are_not_mixed(tmp_path: Path, write_bag: WriteBag) -> None:
+    write_runs(write_bag, 'bags', 'short', evaluation=2)
+    write_runs(write_bag, 'bags', 'long', evaluation=3)
+    with pytest.raises(TableError, match=r'evaluation .*--blocks evaluation'):
+        read_bags([tmp_path / 'bags'], ['A'])
+    (table,) = read_bags([tmp_path / 'bags'], ['A'], blocks='evaluation')
+    assert set(table.rows['block']) == {'2', '3'}
+
+
 def test_the_command_line_reads_a_campaign(
     campaign: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -135,5 +167,8 @@ def test_no_complete_run(tmp_path: Path) -> None:
 def test_responses_of_confirmation_runs(tmp_path: Path, write_bag: WriteBag) -> None:
     for number, letters in enumerate(('ABCDE', 'ABCDE', '')):
         write_bag(f'confirm/{number}', episodes=2 + number, samples=0, observations=letters)
-    assert bag_responses(tmp_path / 'confirm') == {'ABCDE': [5.0, 10.0], '(none)': [15.0]}
+    assert bag_responses(tmp_path / 'confirm', 'final_average_reward') == {
+        'ABCDE': [5.0, 10.0],
+        '(none)': [15.0],
+    }
     assert bag_responses(tmp_path / 'confirm', 'mean_return')['(none)'] == [15.0]
