@@ -86,6 +86,6 @@ def test_runs_of_another_base_are_not_mixed_in(campaign, write_bag) -> None:
 
 
 def test_responses_are_by_the_set_of_high_levels(campaign: Path) -> None:
-    found = bag_responses(campaign)
+    found = bag_responses(campaign, 'final_average_reward')
     assert len(found) == 16
     assert {'(none)', 'ABCD'} < set(found)
