@@ -101,6 +101,14 @@ def earlier() -> list[list[float]]:
     return []
 
 
+def test_a_fault_that_the_channel_cannot_have_is_refused(graph) -> None:
+    imu = graph.add(driver('imu', channel='imu/data'))
+    (answer,) = imu.set_parameters([Parameter('fault', value='wrong_length')])
+    assert not answer.successful
+    assert "fault 'wrong_length': expected one of , stopped" in answer.reason
+    assert imu.set_parameters([Parameter('fault', value='bad_quaternion')])[0].successful
+
+
 SWAPPED = ('imu/data', 'joint_states')
 
 

@@ -99,9 +99,7 @@ class FakeDriverNode(Node):
         declare(self, PARAMETERS)
         value: dict[str, Any] = {p.name: self.get_parameter(p.name).value for p in PARAMETERS}
         self._device = FakeDevice(value)
-        text = (
-            'what is wrong with it; settable while it runs, which of them depends on the channel'
-        )
+        text = 'what is wrong with it; settable while it runs; the channel decides on the choices'
         faults = ('', *fault_names(self._device.row))
         declare(self, [Parameter('fault', '', text, choices=faults, read_only=False)])
         self._received = self._published = 0
