@@ -24,6 +24,7 @@ from hexapod_interfaces.msg import EpisodeResult
 from hexapod_node.matching import subscribed_topics
 from hexapod_sim.nodes.sim_node import SimNode
 from hexapod_sim.sensor_table import LETTERS
+from rclpy.action import ActionClient
 from sensor_msgs.msg import Imu, JointState
 
 pytestmark = pytest.mark.graph
@@ -113,6 +114,26 @@ def test_a_seed_gives_the_same_weights_on_the_graph_and_in_the_environment(
     assert response.result.evaluation_return == judged.average_return
     on_graph, in_env = (t.state_dict() for t in (trainers[0], alone))
     assert_same(on_graph, in_env)
+
+
+def test_a_worker_that_evaluates_gives_signs_of_life(graph, short: str, monkeypatch) -> None:
+    monkeypatch.setattr('hexapod_agent.nodes.graph_run._LIFE_S', 0.01)
+    agent = AgentNode()
+    graph.add(SimNode(), CpgNode(), agent)
+    client = ActionClient(graph.nodes[0], TrainRun, 'train_run')
+    graph.until(client.server_is_ready)
+    heard: list[tuple[str, bool]] = []
+
+    def note(message) -> None:
+        if agent._run is not None:
+            heard.append((agent._run.phase, message.feedback.ended))
+
+    goal = TrainRun.Goal(run_id='r', observations='', seed=1, episodes=1, config=short)
+    handle = graph.result(client.send_goal_async(goal, note))
+    graph.result(handle.get_result_async())
+    client.destroy()
+    assert ('evaluating', False) in heard  # and no episode of it is taken for one of the training
+    assert sum(ended for _, ended in heard) == 1
 
 
 def assert_same(left, right) -> None:

@@ -83,7 +83,7 @@ def _runs(progress: Progress, runs: Iterable[Run]) -> RenderableType:
         table.add_row(
             run.run_id,
             run.observations or 'none',
-            Text(run.state, style=_STYLES[run.state]),
+            Text(run.phase, style=_STYLES[run.state]),
             f'{len(run.returns)}/{run.planned}' if run.planned else '',
             sparkline(curves[run.run_id], low, high),
             reward,

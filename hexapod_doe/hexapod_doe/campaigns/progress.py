@@ -57,6 +57,12 @@ class Run:
     """Why it failed, or how the run in its place differs from it."""
 
     @property
+    def phase(self) -> str:
+        """Its state; once a run under way has had its episodes, that it is being evaluated."""
+        over = self.planned > 0 and len(self.returns) >= self.planned
+        return 'evaluating' if over and self.state is State.RUNNING else self.state
+
+    @property
     def episodes_per_second(self) -> float:
         """Rate of its worker; 0 while nothing is known."""
         return (len(self.returns) - self.earlier) / self.seconds if self.seconds > 0.0 else 0.0

@@ -43,6 +43,7 @@ def test_what_was_done_before_counts(shown):
 def test_a_run_is_followed_to_its_end(shown, folder):
     shown.run('r3')
     assert shown.dashboard.progress.runs['r3'].state is State.RUNNING
+    assert shown.dashboard.progress.runs['r3'].phase == 'evaluating'
     assert shown.dashboard.progress.episodes == 10
     assert shown.dashboard.episodes_per_second > 0.0
     folder.finish('r3')
