@@ -194,6 +194,8 @@ def _trainer(options: argparse.Namespace) -> Trainer:
 def _spec(options: argparse.Namespace) -> RunSpec:
     """Return what the options ask for."""
     spec = RunSpec.load(options.config, options.set)
+    if options.episodes is not None:
+        spec = spec.with_value('training.episodes', options.episodes, '--episodes')
     return spec if options.observations is None else spec.observing(options.observations)
 
 

@@ -15,10 +15,11 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from hexapod_agent.specification.run_spec import add_spec_options
 from hexapod_sim.command_line import CommandLine, file, folder, number, one_line, whole
 
-from hexapod_doe.campaigns.campaign import RunSettings
 from hexapod_doe.campaigns.campaign_lock import campaign_lock, row_lock
+from hexapod_doe.campaigns.changes import Changes
 from hexapod_doe.campaigns.folder import read_progress
 from hexapod_doe.campaigns.page import write_page
 from hexapod_doe.campaigns.plan_copy import keep_config, place_plan
@@ -31,9 +32,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     args = parser().parse_args(arguments)
     try:
         plan = place_plan(args.plan, args.out)
-        row = _row(plan, args.row)
-        settings = _settings(args)
-        state = row.bag_state(settings.expected())
+        row = _row(plan, args)
+        state = row.bag_state(whole=True)
     except (ValueError, OSError) as error:
         print(f'run_case: {one_line(error)}', file=sys.stderr)
         return 2
@@ -51,47 +51,44 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f'run_case: {row.run_id} is trained anew: {state.damage}', file=sys.stderr)
     try:
         with campaign_lock(plan.resolve().parent, shared=True), row_lock(row.bag):
-            keep_config(plan.resolve().parent, settings.loaded())
-            return _train(row, settings, args.stall)
+            keep_config(plan.resolve(), row.treatments.base)
+            return _train(row, args)
     except (ValueError, OSError) as error:
         print(f'run_case: {one_line(error)}', file=sys.stderr)
         return 1
 
 
-def _settings(args: argparse.Namespace) -> RunSettings:
-    config = str(args.config.resolve(strict=True)) if args.config else ''
-    return RunSettings(args.episodes, config, args.record_every)
-
-
-def _train(row: Row, settings: RunSettings, stall_s: float) -> int:
+def _train(row: Row, args: argparse.Namespace) -> int:
     """Train the row and judge its bag."""
     from hexapod_doe.nodes.case_node import train_row  # what is done needs neither ROS nor torch
 
     try:
-        train_row(row, settings, stall_s)
+        train_row(row, args.record_every, args.stall)
     except SystemExit:  # of the nodes; after a signal it is 0, whatever the bag lacks
         faulthandler.cancel_dump_traceback_later()
     directory = row.bag.parent.parent
     write_page(read_progress(directory), directory)
-    if not row.bag_state(settings.expected()).done:
+    if not row.bag_state(whole=True).done:
         print(f'run_case: {row.run_id} is not done, the same command goes on', file=sys.stderr)
         return 1
     print(f'{row.run_id} is done: {row.bag}')
     return 0
 
 
-def _row(plan: Path, number: int) -> Row:
+def _row(plan: Path, args: argparse.Namespace) -> Row:
     """Return the row of a number in the plan's first column.
 
     Raises:
         PlanError: the plan has no such row.
+        hexapod_agent.specification.run_spec.ConfigError: the changes to its base are none.
     """
-    rows = {int(row.metadata['StdOrder']): row for row in read_rows(plan)}
-    if number not in rows:
+    changes = Changes.of(args.config, args.set, args.episodes)
+    rows = {int(row.metadata['StdOrder']): row for row in read_rows(plan, changes)}
+    if args.row not in rows:
         raise PlanError(
-            f'{plan}: no row {number}, expected a StdOrder of {min(rows)} to {max(rows)}'
+            f'{plan}: no row {args.row}, expected a StdOrder of {min(rows)} to {max(rows)}'
         )
-    return rows[number]
+    return rows[args.row]
 
 
 def parser() -> CommandLine:
@@ -100,14 +97,10 @@ def parser() -> CommandLine:
     made.add_argument('--plan', type=file, required=True, help='plan.csv of the campaign')
     made.add_argument('--row', type=whole(ge=1), required=True, help='StdOrder of the row')
     made.add_argument('--out', type=folder, help="the campaign's folder; default that of the plan")
+    add_spec_options(made)
     made.add_argument(
-        '--config',
-        '--hyperparameters',  # its name before the sensors were in it
-        type=file,
-        metavar='FILE',
-        help='YAML file of changes to article.yaml',
+        '--episodes', type=whole(ge=1), help='of a training; default of the specification'
     )
-    made.add_argument('--episodes', type=whole(ge=1), default=1000, help='default %(default)s')
     made.add_argument(
         '--record-every',
         type=whole(ge=0),

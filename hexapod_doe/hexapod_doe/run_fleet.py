@@ -9,9 +9,11 @@ import argparse
 import math
 import signal
 import sys
-from collections.abc import Iterator, Sequence
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 
 import torch
@@ -20,13 +22,12 @@ from hexapod_agent.fleet.fleet import Fleet
 from hexapod_agent.fleet.learners import Learners, SeparateLearners
 from hexapod_agent.fleet.robots import Robots
 from hexapod_agent.fleet.stacked import StackedLearners
-from hexapod_agent.specification.observation import ObservationSpec
 from hexapod_agent.specification.run_spec import RunSpec, add_spec_options
 from hexapod_sim.command_line import CommandLine, file, folder, one_line, whole
 
-from hexapod_doe.bags.run_identity import EPISODES
-from hexapod_doe.campaigns.campaign import Campaign, shared_settings
+from hexapod_doe.campaigns.campaign import Campaign
 from hexapod_doe.campaigns.campaign_lock import campaign_lock
+from hexapod_doe.campaigns.changes import Changes
 from hexapod_doe.campaigns.fleet_campaign import FleetCampaign
 from hexapod_doe.campaigns.fleet_processes import train_in_processes
 from hexapod_doe.campaigns.forecast import forecast
@@ -50,19 +51,29 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 130
 
 
-def build_fleet(
-    config: RunSpec, letters: Sequence[str], slots: int, crew: Crew, device: str
-) -> Fleet:
-    """Make a fleet for runs with such sets of observations.
+def build_fleet(specs: Sequence[RunSpec], slots: int, crew: Crew, device: str) -> Fleet:
+    """Make a fleet for runs of such specifications, which learn alike: see `learning_alike`.
 
     On the CPU each learner computes apart and learns, to the last bit, what it learns alone. On
     any other device all learners are one stack.
     """
     learners: Learners = SeparateLearners(crew)
     if not is_cpu(device):
-        widest = max(ObservationSpec(each).size for each in letters)
-        learners = StackedLearners(config, widest, slots, crew, device)
-    return Fleet(Robots(config, slots), learners, crew, slots)
+        widest = max(spec.observed.size for spec in specs)
+        learners = StackedLearners(specs[0], widest, slots, crew, device)
+    return Fleet(Robots(slots), learners, crew, slots)
+
+
+def learning_alike(specs: Mapping[str, RunSpec], device: str) -> list[list[str]]:
+    """Return runs in groups that can learn side by side in one process.
+
+    A stack takes equal networks and updates. Arithmetic is set for all of a process.
+    """
+    groups: defaultdict[object, list[str]] = defaultdict(list)
+    for name, spec in specs.items():
+        alike = None if is_cpu(device) else spec.learner
+        groups[spec.training.precision, alike].append(name)
+    return list(groups.values())
 
 
 def is_cpu(device: str) -> bool:
@@ -83,58 +94,54 @@ def _interruptible() -> Iterator[None]:
 
 
 def _run(args: argparse.Namespace) -> int:
-    config = RunSpec.load(args.config, args.set)
     plan = place_plan(args.plan, args.out)
     directory = plan.resolve().parent
+    changes = Changes.of(args.config, args.set, args.episodes)
     with campaign_lock(directory, shared=True):
-        shared = shared_settings(config, args.episodes or config.training.episodes)
-        campaign = Campaign.open(plan, attempts=1, shared=shared)
+        campaign = Campaign.open(plan, attempts=1, changes=changes)
         campaign.check_own()
         for run_id, damage in campaign.damaged.items():
             print(f'run_fleet: {run_id} is trained anew: {damage}', file=sys.stderr)
         campaign.check_writable()
-        keep_config(directory, config)
-        due = [row.observations for row in campaign.rows if row.run_id not in campaign.done]
+        keep_config(plan.resolve(), campaign.base)
+        due = {row.run_id: row.spec for row in campaign.due}
         processes = args.processes or (_CORES if is_cpu(args.device) else 1)
         if due:
             workers = processes if is_cpu(args.device) else 0
-            print(forecast(len(due), int(shared[EPISODES]), workers, config))
+            print(forecast(list(due.values()), workers))
         if processes > 1 and due:
             count = min(processes, len(due))
-            for what in train_in_processes(directory, count, _options(plan, args, count, due)):
+            options = _options(plan, args, count, len(due))
+            for what in train_in_processes(directory, count, options):
                 print(f'run_fleet: {what}', file=sys.stderr)
-            campaign = Campaign.open(plan, attempts=1, shared=shared)
+            campaign = Campaign.open(plan, attempts=1, changes=changes)
         elif due:
-            _train(campaign, config, due, args)
+            _train(campaign, due, args)
     print(f'{len(campaign.done)} of {len(campaign.rows)} runs are in {campaign.directory}')
     return 0 if len(campaign.done) == len(campaign.rows) else 1
 
 
-def _options(plan: Path, args: argparse.Namespace, count: int, due: Sequence[str]) -> list[str]:
+def _options(plan: Path, args: argparse.Namespace, count: int, due: int) -> list[str]:
     """Return the command line of one of several processes."""
     names = ('episodes', 'config', 'slots', 'threads', 'device', 'began')
     given = {'plan': plan} | {name: getattr(args, name) for name in names}
     if not is_cpu(args.device):  # its rows and the cores are shared out evenly
-        given['slots'] = args.slots or math.ceil(len(due) / count)
+        given['slots'] = args.slots or math.ceil(due / count)
         given['threads'] = args.threads or max(_CORES // count, 1)
     options = [(name, value) for name, value in given.items() if value is not None]
     options += [('set', setting) for setting in args.set]
     return [text for name, value in options for text in (f'--{name}', str(value))]
 
 
-def _train(
-    campaign: Campaign, config: RunSpec, due: Sequence[str], args: argparse.Namespace
-) -> None:
-    """Train rows with such sets of observations in this process."""
-    episodes = args.episodes or config.training.episodes
+def _train(campaign: Campaign, due: Mapping[str, RunSpec], args: argparse.Namespace) -> None:
+    """Train rows of such specifications in this process, one group after the other."""
     on_cpu = is_cpu(args.device)
     threads = args.threads or (1 if on_cpu else _CORES)
-    slots = min(args.slots or (threads if on_cpu else len(due)), len(due))
-    with (
-        Crew(threads) as crew,
-        FleetCampaign(campaign, config, episodes, args.device, args.began) as rows,
-    ):
-        build_fleet(config, due, slots, crew, args.device).train(rows.take)
+    with Crew(threads) as crew, FleetCampaign(campaign, args.device, args.began) as rows:
+        for group in learning_alike(due, args.device):
+            specs = [due[run_id] for run_id in group]
+            slots = min(args.slots or (threads if on_cpu else len(due)), len(group))
+            build_fleet(specs, slots, crew, args.device).train(partial(rows.take, group))
 
 
 def _parser() -> CommandLine:
@@ -144,7 +151,7 @@ def _parser() -> CommandLine:
         '--out', type=folder, help="the campaign's folder; default that of the plan"
     )
     parser.add_argument(
-        '--episodes', type=whole(ge=1), help='of a training; default of article.yaml'
+        '--episodes', type=whole(ge=1), help='of a training; default of the specification'
     )
     add_spec_options(parser)
     parser.add_argument(

@@ -36,6 +36,7 @@ from hexapod_agent.fleet.stopwatch import Stopwatch
 from hexapod_agent.learning.summary import EpisodeSummary
 from hexapod_agent.learning.training import Trainer
 from hexapod_agent.specification.run_spec import RunSpec
+from hexapod_agent.specification.spec_text import changes_text
 from hexapod_agent.train import train_episode
 from hexapod_doe.run_fleet import build_fleet
 from hexapod_interfaces.action import TrainRun
@@ -137,10 +138,9 @@ class Workers:
             client.warm_up(each, self._goal(episodes=1))
 
     def _goal(self, episodes: int) -> TrainRun.Goal:
-        return TrainRun.Goal(
-            run_id='bench', observations=OBSERVATIONS, seed=1, episodes=episodes,
-            config=self._config,
-        )  # fmt: skip
+        settings = [f'observations={OBSERVATIONS}', f'training.episodes={episodes}']
+        spec = changes_text(self._config, settings)
+        return TrainRun.Goal(run_id='bench', spec=spec, seed=1)
 
     def speed(self) -> Speed:
         """Give each worker a run at once; count from the end of its first episode."""
@@ -218,8 +218,7 @@ def fleet(
 
     with Crew(threads or (1 if device == 'cpu' else CORES)) as crew:
         runs = [TimedRun(seed, start_clock) for seed in range(rows)]
-        config = runs[0].trainer.config
-        made = build_fleet(config, [OBSERVATIONS], rows, crew, device)
+        made = build_fleet([runs[0].trainer.config], rows, crew, device)
         made.train(partial(next, iter(runs), None))
         speed = Speed(rows * STEPS, time.perf_counter() - wall, time.process_time() - cpu)
         return speed, made.stopwatch.shares()

@@ -19,6 +19,7 @@ import numpy as np
 import rclpy
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.specification.run_spec import RunSpec
+from hexapod_agent.specification.spec_text import changes_text
 from hexapod_cpg.mapping import ACTION_SIZE
 from hexapod_interfaces.action import TrainRun
 from rclpy.action import ActionClient
@@ -84,11 +85,10 @@ class Client:
     def worker(self, namespace: str, config: Path) -> float:
         """Return periods per second of a worker's second run; the first one warms it up."""
         client = ActionClient(self.node, TrainRun, f'/{namespace}/train_run')
-        goal = TrainRun.Goal(
-            run_id='bench', observations=OBSERVATIONS, seed=1, episodes=1, config=str(config)
-        )
+        settings = [f'observations={OBSERVATIONS}', 'training.episodes=1']
+        goal = TrainRun.Goal(run_id='bench', spec=changes_text(config, settings), seed=1)
         self.warm_up(client, goal)
-        goal.episodes = EPISODES
+        goal.spec = changes_text(config, [settings[0], f'training.episodes={EPISODES}'])
         began = time.perf_counter()
         handle = self.result(client.send_goal_async(goal))
         response = self.result(handle.get_result_async())

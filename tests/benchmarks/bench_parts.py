@@ -26,6 +26,7 @@ os.environ.setdefault('OMP_NUM_THREADS', '1')
 
 import rclpy
 from hexapod_agent.learning.training import Trainer
+from hexapod_agent.specification.spec_text import changes_text
 from hexapod_bringup.worker_node import make_worker
 from hexapod_cpg.locomotion import Locomotion
 from hexapod_interfaces.action import TrainRun
@@ -98,9 +99,8 @@ class Worker:
 
     def train(self, episodes: int) -> None:
         """Have it run some episodes."""
-        goal = TrainRun.Goal(
-            observations=OBSERVATIONS, seed=1, episodes=episodes, config=self._config
-        )
+        settings = [f'observations={OBSERVATIONS}', f'training.episodes={episodes}']
+        goal = TrainRun.Goal(spec=changes_text(self._config, settings), seed=1)
         handle = self._wait(self._client.send_goal_async(goal))
         response = self._wait(handle.get_result_async())
         assert not response.result.message, response.result.message

@@ -75,7 +75,8 @@ def main() -> None:
         if clock.calls >= WARM_UP:
             marks.append((clock.calls, time.process_time(), clock.seconds))
 
-    goal = TrainRun.Goal(run_id='bench', observations=OBSERVATIONS, seed=1, episodes=EPISODES)
+    spec = f'{{observations: {OBSERVATIONS}, training: {{episodes: {EPISODES}}}}}'
+    goal = TrainRun.Goal(run_id='bench', spec=spec, seed=1)
     handle = result(action.send_goal_async(goal, mark))
     response = result(handle.get_result_async())
     assert response.result.message == '', response.result.message

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 import rclpy
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_interfaces.action import TrainRun
 from hexapod_node.root import root_arguments
 from hexapod_node.spin import spin_once
@@ -62,6 +63,17 @@ class Graph:
             return self.result(handle.get_result_async(), timeout_s)
         finally:
             client.destroy()
+
+
+@pytest.fixture
+def spec() -> Callable[..., str]:
+    """Return a function that gives the text of a specification."""
+
+    def make(observations: str = '', episodes: int = 1, config: Path | str | None = None) -> str:
+        made = RunSpec.load(config, [f'training.episodes={episodes}'])
+        return made.observing(observations).to_text()
+
+    return make
 
 
 @pytest.fixture

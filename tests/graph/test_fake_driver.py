@@ -68,9 +68,8 @@ def returns(graph, tmp_path, *drivers: FakeDriverNode, observations='C', config=
                 set(wanted) <= set(subscribed_topics(node, made.get_name(), '/'))
             )
         )
-    goal = TrainRun.Goal(
-        run_id='r', observations=observations, seed=3, episodes=2, config=str(file)
-    )
+    spec = RunSpec.load(file, ['training.episodes=2']).observing(observations)
+    goal = TrainRun.Goal(run_id='r', spec=spec.to_text(), seed=3)
     assert graph.train(goal).result.message == ''
     graph.until(lambda: len(heard) == 2)
     assert all((r.late, r.missing, r.duplicate) == (0, 0, 0) for r in heard)

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -19,7 +20,6 @@ from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_doe.bags.run_record import read_run
 from hexapod_doe.bags.verify import verify
-from hexapod_doe.campaigns.campaign import RunSettings
 from hexapod_doe.campaigns.fleet_row import FleetRow
 from hexapod_doe.campaigns.row import Row
 from hexapod_doe.designs.factor import sensors
@@ -33,7 +33,7 @@ EPISODES = 5
 SHORT = (
     'task: {time_limit_steps: 20}\nddpg: {batch_size: 8, update_every: 4}\n'
     'actor: {hidden: [16, 16]}\ncritic: {hidden: [16, 16]}\n'
-    'training: {evaluation: 2, checkpoint_every: 2}\n'
+    f'training: {{episodes: {EPISODES}, evaluation: 2, checkpoint_every: 2}}\n'
 )
 
 
@@ -54,29 +54,21 @@ class Quiet:
 
 
 @pytest.fixture
-def config(tmp_path: Path) -> Path:
-    path = tmp_path / 'short.yaml'
-    path.write_text(SHORT)
-    return path
-
-
-@pytest.fixture
-def on_graph(graph, config: Path) -> Callable[[Row], str]:
+def on_graph(graph) -> Callable[[Row], str]:
     """Return a function that has a worker train a row; what it returns is why that failed."""
     graph.add(SimNode(), CpgNode(), RecorderNode(), AgentNode())
-    settings = RunSettings(EPISODES, str(config))
-    return lambda row: graph.train(train_goal(row, settings)).result.message
+    return lambda row: graph.train(train_goal(row, 0)).result.message
 
 
 @pytest.fixture
-def in_fleet(config: Path) -> Callable[[Row], Exception | None]:
+def in_fleet() -> Callable[[Row], Exception | None]:
     """Return a function that has a fleet train a row; what it returns is why that failed."""
 
     def train(row: Row) -> Exception | None:
-        watch, settings = Quiet(), RunSpec.load(config)
+        watch = Quiet()
         with Crew(2) as crew:
-            fleet = build_fleet(settings, [row.observations], 1, crew, 'cpu')
-            runs = iter([FleetRow(row, settings, EPISODES, 'cpu', watch)])
+            fleet = build_fleet([row.spec], 1, crew, 'cpu')
+            runs = iter([FleetRow(row, 'cpu', watch)])
             fleet.train(partial(next, runs, None))
         return watch.error
 
@@ -85,7 +77,9 @@ def in_fleet(config: Path) -> Callable[[Row], Exception | None]:
 
 @pytest.fixture
 def row(tmp_path: Path) -> Callable[[str], Row]:
-    return lambda name: Row('r', 'BE', 4, tmp_path / name, {'case': '3'}, sensors('BE'), (1, 1))
+    base = RunSpec.from_text(SHORT, 'test')
+    treatments = replace(sensors('BE'), base=base)
+    return lambda name: Row('r', 'BE', 4, tmp_path / name, {'case': '3'}, treatments, (1, 1))
 
 
 @pytest.fixture

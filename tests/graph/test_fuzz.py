@@ -307,12 +307,9 @@ def test_lock_step_agent_ends_the_run_and_takes_another(graph, tmp_path, count: 
     cpg, agent = CpgNode(), AgentNode()
     watch = Watch(cpg, rated=False)
     graph.add(SimNode(), cpg, agent)
-    (tmp_path / 'short.yaml').write_text(
-        'task: {time_limit_steps: 10}\ntraining: {evaluation: 0}\n'
-    )
     goal = TrainRun.Goal(
-        run_id='fuzz', checkpoint=f'{tmp_path}/agent.pt', seed=9, episodes=1,
-        config=f'{tmp_path}/short.yaml',
+        run_id='fuzz', checkpoint=f'{tmp_path}/agent.pt', seed=9,
+        spec='{task: {time_limit_steps: 10}, training: {episodes: 1, evaluation: 0}}',
     )  # fmt: skip
     helper, fuzzer = graph.nodes[0], MessageFuzzer(SEED)
     good: dict[str, Any] = {}

@@ -111,7 +111,8 @@ def play_on_graph(graph) -> Tape:
     publishers = graph.nodes[0].count_publishers
     graph.add(AgentNode(make_trainer))
     graph.until(lambda: publishers('joint_trajectory') == 1)
-    goal = TrainRun.Goal(run_id='one_path', observations=LETTERS, seed=SEED, episodes=1)
+    spec = f'{{observations: {LETTERS}, training: {{episodes: 1}}}}'
+    goal = TrainRun.Goal(run_id='one_path', spec=spec, seed=SEED)
     response = graph.train(goal)
     assert response.result.message == ''
     (trainer,) = trainers

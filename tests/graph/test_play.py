@@ -28,6 +28,7 @@ SMALL = {
     'actor': {'hidden': [16, 12]},
     'critic': {'hidden': [16, 12]},
 }
+ONE = 'training: {episodes: 1}'
 
 
 @pytest.fixture
@@ -65,7 +66,7 @@ def test_playing_subscribes_to_the_checkpoints_channels_and_learns_nothing(
             seen.append(set(subscribed_topics(node, 'agent', '/')))
 
     graph.add(Watched(), CpgNode(), AgentNode())
-    response = graph.train(TrainRun.Goal(run_id='p', checkpoint=path, seed=9, episodes=1))
+    response = graph.train(TrainRun.Goal(run_id='p', checkpoint=path, spec=ONE, seed=9))
     assert (response.result.message, response.result.checkpoint) == ('', path)
     assert {'/body/twist', '/imu/data'} < seen[-1]
     assert '/joint_torques' not in seen[-1]
@@ -75,14 +76,12 @@ def test_playing_subscribes_to_the_checkpoints_channels_and_learns_nothing(
     assert response.result.final_average_reward == played.episode_return
 
 
-def test_a_config_changes_the_checkpoints_own(graph, path: str, tmp_path) -> None:
-    (tmp_path / 'longer.yaml').write_text('task: {time_limit_steps: 50}\n')
+def test_a_goal_changes_the_specification_of_the_checkpoint(graph, path: str) -> None:
     results = []
     graph.nodes[0].create_subscription(EpisodeResult, 'episode_result', results.append, 10)
     graph.add(SimNode(), CpgNode(), AgentNode())
-    goal = TrainRun.Goal(
-        run_id='p', checkpoint=path, episodes=1, config=str(tmp_path / 'longer.yaml')
-    )
+    spec = '{task: {time_limit_steps: 50}, training: {episodes: 1}}'
+    goal = TrainRun.Goal(run_id='p', checkpoint=path, spec=spec)
     assert graph.train(goal).result.message == ''
     graph.until(lambda: bool(results))
     assert results[0].steps == 50
@@ -91,7 +90,8 @@ def test_a_config_changes_the_checkpoints_own(graph, path: str, tmp_path) -> Non
 @pytest.mark.parametrize(
     ('change', 'complaint'),
     [
-        ({'observations': 'BD'}, "observes 'BC', expected the same or none"),
+        ({'spec': 'observations: BD'}, "observes 'BC', expected the same or none"),
+        ({'spec': 'task: {colour: 1}'}, "spec: unknown key 'task.colour'"),
         ({'checkpoint': '/no/such.pt'}, "checkpoint '/no/such.pt': not below"),
         ({'checkpoint': 'TMP/none.pt'}, "none.pt' not found, expected a file"),
     ],
@@ -100,7 +100,7 @@ def test_a_wrong_goal_ends_with_one_clear_error(
     graph, path, tmp_path, change, complaint: str
 ) -> None:
     graph.add(AgentNode())
-    goal = TrainRun.Goal(run_id='p', checkpoint=path, episodes=1)
+    goal = TrainRun.Goal(run_id='p', checkpoint=path, spec=ONE)
     for name, value in change.items():
         setattr(goal, name, value.replace('TMP', str(tmp_path)))
     assert complaint in graph.train(goal).result.message

@@ -32,7 +32,7 @@ class CutError(RuntimeError):
 
 
 @pytest.fixture
-def goal(tmp_path: Path) -> Callable[..., TrainRun.Goal]:
+def goal(tmp_path: Path, spec) -> Callable[..., TrainRun.Goal]:
     """Return a function that makes the goal of a short run, a checkpoint every two episodes."""
     (tmp_path / 'short.yaml').write_text(
         'task: {time_limit_steps: 20}\nddpg: {batch_size: 8, update_every: 4}\n'
@@ -43,10 +43,8 @@ def goal(tmp_path: Path) -> Callable[..., TrainRun.Goal]:
     def make(name: str, **changes) -> TrainRun.Goal:
         fields = {
             'run_id': 'r',
-            'observations': 'BE',
+            'spec': spec('BE', EPISODES, tmp_path / 'short.yaml'),
             'seed': 4,
-            'episodes': EPISODES,
-            'config': str(tmp_path / 'short.yaml'),
             'bag': str(tmp_path / name),
             'record_every': 2,
             'resume': True,

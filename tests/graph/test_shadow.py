@@ -53,9 +53,8 @@ def bag(graph, tmp_path) -> Path:
     """The bag of two episodes that agent.pt played, both sampled."""
     agent = save_agent(tmp_path / 'agent.pt', LETTERS, 5)
     graph.add(SimNode(), CpgNode(), RecorderNode(), AgentNode())
-    goal = TrainRun.Goal(
-        run_id='r', checkpoint=str(agent), seed=9, episodes=2, bag=str(tmp_path / 'r')
-    )
+    goal = TrainRun.Goal(run_id='r', checkpoint=str(agent), seed=9, bag=str(tmp_path / 'r'))
+    goal.spec = 'training: {episodes: 2}'
     goal.record_every = 1
     response = graph.train(goal)
     assert response.result.message == ''

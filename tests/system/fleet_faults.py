@@ -77,7 +77,7 @@ class Victim:
         return self._done()
 
     def _done(self) -> list[Row]:
-        return [row for row in self.rows if row.bag_state({}).done]
+        return [row for row in self.rows if row.bag_state().done]
 
     def begin(self, episodes: int = EPISODES) -> subprocess.Popen[str]:
         """Start a fleet of one process."""
@@ -200,7 +200,7 @@ def rotten_bag(victim: Victim) -> bool:
     """Flip a bit of a finished bag: its row is lost, and says so."""
     row = victim.rng.choice(victim.done())
     flip(victim.rng.choice(sorted(row.bag.iterdir())), victim.rng)
-    assert row.bag_state({}).damage
+    assert row.bag_state().damage
     return True
 
 
@@ -232,7 +232,7 @@ def another_plan(victim: Victim) -> bool:
     plan = victim.folder / 'plan.csv'
     before = plan.read_text()
     plan.write_text(before.replace(f',{done[0].seed},', f',{done[0].seed + 1},'))
-    assert not next(row for row in victim.rows if row.run_id == done[0].run_id).bag_state({}).done
+    assert not next(row for row in victim.rows if row.run_id == done[0].run_id).bag_state().done
     status = victim.end(victim.begin())
     plan.write_text(before)
     assert status == 2
@@ -258,7 +258,7 @@ def linked_run(victim: Victim) -> bool:
     elsewhere.parent.mkdir(exist_ok=True)
     row.bag.rename(elsewhere)
     row.bag.symlink_to(elsewhere)
-    assert row.bag_state({}).done
+    assert row.bag_state().done
     return True
 
 
@@ -270,7 +270,7 @@ def lost_link(victim: Victim) -> bool:
     else:
         shutil.rmtree(row.bag)
     row.bag.symlink_to(victim.folder / 'gone')
-    assert row.bag_state({}).damage
+    assert row.bag_state().damage
     return True
 
 

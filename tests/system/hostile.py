@@ -357,7 +357,7 @@ class Hostile:
         return self.value(import_class(type_name), name)
 
     def _text(self, name: str) -> str:
-        paths = name in ('bag', 'checkpoint', 'config') or self._random.random() < 0.1
+        paths = name in ('bag', 'checkpoint') or self._random.random() < 0.1
         pool = self._paths if paths and self._random.random() < 0.8 else WORDS
         return str(pool[self._random.integers(len(pool))])
 

@@ -26,6 +26,7 @@ SEED = int(os.environ.get('HEXAPOD_FUZZ_SEED', '7'))
 SHARE = float(os.environ.get('HEXAPOD_FUZZ_SHARE', '1'))
 SECRET = 'swordfish'
 SHORT = 'task: {time_limit_steps: 200}\nddpg: {update_every: 50}\ntraining: {evaluation: 1}\n'
+GOOD = SHORT.replace('{evaluation', '{episodes: 5, evaluation') + 'observations: ABCDEFG\n'
 AGENT = ROOT / 'ros_ws/src/hexapod_bringup/agents/ABCDE.pt'
 
 # Messages, requests, parameter sets, and in how many turns.
@@ -33,7 +34,7 @@ SOME = (1_500, 150, 150, 3)
 ALL = (int(100_000 * SHARE), int(10_000 * SHARE), int(10_000 * SHARE), 20)
 FEW_NODES = {
     'worker': 'ros2 run hexapod_bringup worker_node --ros-args -r __ns:=/w -p root:=campaign/runs '
-    '-p readable:=short.yaml -p match_timeout:=0.2 -p drain_timeout:=0.2 -p result_timeout:=0.2',
+    '-p match_timeout:=0.2 -p drain_timeout:=0.2 -p result_timeout:=0.2',
     'player': 'ros2 run hexapod_doe player_node --ros-args -r __ns:=/p -p loop:=true '
     f'-p bag:={ROOT}/bags/sample',
     'fake driver': 'ros2 run hexapod_sim fake_driver --ros-args -r __ns:=/w -p delay:=0.05',
@@ -120,10 +121,8 @@ def test_nothing_that_a_peer_sends_ends_a_node_or_leads_out(
         turns = counts[3]
         for turn in range(turns):
             runs = here / 'campaign' / 'runs'
-            goal = TrainRun.Goal(
-                run_id=f'good{turn}', observations='ABCDEFG', seed=turn, episodes=5
-            )
-            goal.bag, goal.config, goal.record_every = f'{runs}/good{turn}', 'short.yaml', 1
+            goal = TrainRun.Goal(run_id=f'good{turn}', spec=GOOD, seed=turn)
+            goal.bag, goal.record_every = f'{runs}/good{turn}', 1
             peer.begin_run('/w/train_run', goal)
             peer.send_messages(counts[0] // turns, alive)
             peer.send_requests(counts[1] // turns, alive)

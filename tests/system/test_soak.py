@@ -29,7 +29,8 @@ task: {{time_limit_steps: {STEPS}}}
 ddpg: {{batch_size: 8, buffer_size: 1000, update_every: 5}}
 actor: {{hidden: [16, 16]}}
 critic: {{hidden: [16, 16]}}
-training: {{evaluation: 0, checkpoint_every: 1000}}
+training: {{episodes: {EPISODES}, evaluation: 0, checkpoint_every: 1000}}
+observations: ABCDEFG
 """
 
 
@@ -99,13 +100,10 @@ def client(shell) -> Iterator[Client]:
 def test_ten_thousand_episodes_leave_a_worker_as_it_was(
     client: Client, tmp_path: Path, capsys
 ) -> None:
-    (tmp_path / 'short.yaml').write_text(CONFIG)
     goal = TrainRun.Goal(
         run_id='soak',
-        observations='ABCDEFG',
+        spec=CONFIG,
         seed=1,
-        episodes=EPISODES,
-        config=str(tmp_path / 'short.yaml'),
         bag=str(tmp_path / 'soak'),
         record_every=1000,
     )

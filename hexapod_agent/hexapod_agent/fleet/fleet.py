@@ -18,9 +18,9 @@ from hexapod_agent.fleet.stopwatch import Stopwatch
 class Fleet:
     """Places for runs that are trained in one process.
 
-    Each run does what it does alone, in the same order: observe, act, learn, step. Only the
-    pattern generators of all robots are one batch, and with them the learners if they are a
-    stack; physics and separate learners are jobs of the crew.
+    Each run does what it does alone, in the same order: observe, act, learn, step. Only
+    equal pattern generators are one batch, and with them the learners if they are a stack;
+    physics and separate learners are jobs of the crew.
 
     Attributes:
         steps: Control periods so far, summed over the runs.
@@ -84,7 +84,7 @@ class Fleet:
     def _begin_episode(self, seat: Seat) -> None:
         run_seed, episode = seat.next_episode
         seed = episode_seed(run_seed, episode)
-        seat.observation, seat.outcome = self._robots.reset(seat.place, seat.trainer.spec, seed)
+        seat.observation, seat.outcome = self._robots.reset(seat.place, seat.trainer.config, seed)
         seat.agent.begin_episode(episode)
 
     def _physics(self, seats: Sequence[Seat]) -> list[Job]:

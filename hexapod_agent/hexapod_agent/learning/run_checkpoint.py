@@ -29,7 +29,7 @@ def keep(bag: str | Path, trainer: Trainer) -> None:
     checkpoint.save(checkpoint_path(bag), trainer)
 
 
-def resumed(bag: str | Path, config: RunSpec, seed: int, episodes: int) -> Trainer | None:
+def resumed(bag: str | Path, config: RunSpec, seed: int) -> Trainer | None:
     """Return a trainer that goes on where the run was at its checkpoint; None without one.
 
     Raises:
@@ -39,6 +39,9 @@ def resumed(bag: str | Path, config: RunSpec, seed: int, episodes: int) -> Train
     if not path.exists():
         return None
     trainer = checkpoint.load(path)
+    episodes = config.training.episodes
+    if config.training.final_rate == 1.0:  # its length changes nothing of what it has learned
+        trainer.config = trainer.config.with_value('training.episodes', episodes, str(path))
     differences = different(trainer, config, seed)
     if trainer.episode >= episodes:
         differences.append(f'{trainer.episode} episodes have been, less than {episodes} expected')

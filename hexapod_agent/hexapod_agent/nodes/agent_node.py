@@ -32,11 +32,9 @@ from hexapod_agent.learning.training import Trainer
 from hexapod_agent.nodes.action_names import PLAY_RUN, TRAIN_RUN
 from hexapod_agent.nodes.graph_run import CanceledError, GraphRun, MakeTrainer, RunContext
 from hexapod_agent.nodes.peers import Peers
-from hexapod_agent.specification.observation import parse_observations
-from hexapod_agent.specification.run_spec import ConfigError, RunSpec
+from hexapod_agent.specification.run_spec import RunSpec
 
 PARAMETERS = (
-    Parameter('config', '', 'hyper-parameter file of runs that name none; empty: article.yaml'),
     Parameter(
         'timeout',
         10.0,
@@ -50,7 +48,6 @@ PARAMETERS = (
     ROOT,
     READABLE,
 )
-_MOST_EPISODES = 1_000_000
 
 
 class AgentNode(Node):
@@ -131,45 +128,40 @@ class AgentNode(Node):
         """Make the goal's paths absolute.
 
         Raises:
-            ValueError: one is not there, or not for a request to name; or there are too many
-                episodes.
+            ValueError: one is not there, or not for a request to name.
         """
-        if not 1 <= goal.episodes <= _MOST_EPISODES:
-            raise ValueError(f'episodes {goal.episodes}: expected 1 to {_MOST_EPISODES}')
-        for field in ('checkpoint', 'config'):
-            if given := getattr(goal, field):
-                path = self._root.readable(field, given)
-                if not path.is_file():
-                    raise ValueError(f"{field} '{path}' not found, expected a file")
-                setattr(goal, field, str(path))
+        if goal.checkpoint:
+            path = self._root.readable('checkpoint', goal.checkpoint)
+            if not path.is_file():
+                raise ValueError(f"checkpoint '{path}' not found, expected a file")
+            goal.checkpoint = str(path)
         if goal.bag:
             goal.bag = str(self._root.inside('bag', goal.bag))
 
     def _loaded(self, goal: TrainRun.Goal) -> tuple[RunSpec, Agent]:
-        """Return what the goal asks for, made of its files.
+        """Return what the goal asks for.
 
         Raises:
-            ValueError: a file cannot be used. Why may quote it, so only this machine is told.
+            ValueError: its specification is not one, or its checkpoint cannot be used. Why may
+                quote that file, so only this machine is told.
         """
+        if not goal.checkpoint:
+            config = RunSpec.from_text(goal.spec, 'spec')
+            return config, self._resumed(goal, config)
         try:
-            return trained(goal) if goal.checkpoint else self._untrained(goal)
-        except (CheckpointError, ConfigError) as error:
+            return trained(goal)
+        except CheckpointError as error:
             _tell_this_machine(f'run {goal.run_id}: {error}')
-            files = [f"'{path}'" for path in (goal.checkpoint, goal.config) if path]
-            named = ' or '.join(files) or 'the configuration'
-            raise ValueError(f'{named}: cannot be used, this worker prints why') from None
-
-    def _untrained(self, goal: TrainRun.Goal) -> tuple[RunSpec, Trainer]:
-        config = RunSpec.load(goal.config or self.get_parameter('config').value)
-        config = config.observing(goal.observations)
-        return config, self._resumed(goal, config)
+            raise ValueError(
+                f"'{goal.checkpoint}': cannot be used, this worker prints why"
+            ) from None
 
     def _resumed(self, goal: TrainRun.Goal, config: RunSpec) -> Trainer:
         """Return the trainer of the run's checkpoint, or one that begins."""
         trainer = None
         if goal.resume and goal.bag:
             try:
-                trainer = run_checkpoint.resumed(goal.bag, config, goal.seed, goal.episodes)
+                trainer = run_checkpoint.resumed(goal.bag, config, goal.seed)
             except CheckpointError as error:
                 _tell_this_machine(f'run {goal.run_id}: {error}')
                 self.get_logger().warning(
@@ -191,20 +183,19 @@ def _tell_this_machine(text: str) -> None:
 
 
 def trained(goal: TrainRun.Goal) -> tuple[RunSpec, Agent]:
-    """Return the agent of the goal's checkpoint, and the configuration that it plays in.
+    """Return the agent of the goal's checkpoint, and the specification that it plays in.
 
     Raises:
-        ValueError: the checkpoint cannot be read, or observes other channels than the goal says.
+        ValueError: the checkpoint cannot be read, the changes to its specification are none, or
+            other channels than it observes are asked for.
     """
     agent = agent_file.load(goal.checkpoint)
-    config = agent.config
-    if goal.observations and parse_observations(goal.observations) != config.letters:
+    config = agent.config.changed_by_text(goal.spec, 'spec')
+    if config.letters != agent.config.letters:
         raise ValueError(
-            f"observations '{goal.observations}': checkpoint '{goal.checkpoint}' observes "
-            f"'{config.letters}', expected the same or none"
+            f"spec: observations '{config.letters}': checkpoint '{goal.checkpoint}' observes "
+            f"'{agent.config.letters}', expected the same or none"
         )
-    if goal.config:
-        config = config.changed_by(goal.config)
     return config, Player(agent.policy, config.training.window)
 
 

@@ -114,7 +114,10 @@ def episodes_on_graph(checkpoint: Path, starts: int, seed: int) -> Iterator[Epis
         GraphError: the run ended early, or an episode did not arrive whole.
     """
     goal = TrainRun.Goal(
-        run_id='evaluation', checkpoint=str(checkpoint.resolve()), seed=seed, episodes=starts
+        run_id='evaluation',
+        checkpoint=str(checkpoint.resolve()),
+        spec=f'training: {{episodes: {starts}}}',
+        seed=seed,
     )
     namespace, files = f'/evaluate_{os.getpid()}', root_arguments('', checkpoint.resolve())
     with serving(_make_nodes, namespace, files) as (executor, (sim, _, _, node)):

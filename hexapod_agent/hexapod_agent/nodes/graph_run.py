@@ -100,7 +100,7 @@ class GraphRun:
         self._context, self._node = context, context.node
         self._goal_handle = goal_handle
         self._goal: TrainRun.Goal = goal_handle.request
-        self._config = config
+        self._config, self._length = config, config.training.episodes
         self._agent = agent
         self._events: EventLog | None = None
         self._loop = ControlLoop(context.node, context.commands, config, context.timeout_s)
@@ -124,12 +124,12 @@ class GraphRun:
         return {'run_id': self._goal.run_id, 'episode': self._episode, **counts}
 
     async def execute(self) -> TrainRun.Result:
-        """Run every episode of the goal, then close the bag and save an agent that has learned.
+        """Run every episode, then close the bag and save an agent that has learned.
 
         Raises:
             CanceledError: The goal was taken back.
         """
-        peers, goal = self._context.peers, self._goal
+        peers, goal, length = self._context.peers, self._goal, self._length
         await peers.configure('sim', 'task', asdict(self._config.task))
         qualities = {'qualities': quality.to_text(self._config.sensors)}
         await peers.configure('sim', 'sensors', qualities)
@@ -137,7 +137,7 @@ class GraphRun:
         first = await self._open_bag() if goal.bag else 0
         if isinstance(self._agent, Trainer):
             set_numerics(self._config.training.precision)
-        for self._episode in range(first, goal.episodes):
+        for self._episode in range(first, length):
             self._check_wanted(self._episode)
             await self._run_episode()
             await self._keep()
@@ -149,7 +149,7 @@ class GraphRun:
                 checkpoint.save_agent(agent, self._agent)
             # A name, not a path: bags are moved, and their agents with them.
             found |= {'checkpoint': Path(agent).name}
-            bag = await peers.finish_recording(goal.episodes, found)
+            bag = await peers.finish_recording(length, found)
             run_checkpoint.forget(goal.bag)
         self._goal_handle.succeed()
         return TrainRun.Result(
@@ -180,7 +180,7 @@ class GraphRun:
     async def _keep(self) -> None:
         """Take a checkpoint if one is due, after its episodes' results are on the disk."""
         done, every = self._episode + 1, self._config.training.checkpoint_every
-        if not self._goal.bag or done % every or done == self._goal.episodes:
+        if not self._goal.bag or done % every or done == self._length:
             return
         if isinstance(self._agent, Trainer):
             await self._context.peers.secure_recording(done)
@@ -265,7 +265,7 @@ class GraphRun:
             'observations': self._config.letters,
             'seed': str(self._goal.seed),
             'mode': 'play' if self._goal.checkpoint else 'train',
-            'episodes': str(self._goal.episodes),
+            'episodes': str(self._length),
             'window': str(self._config.training.window),
             'evaluation': str(self._evaluation),
             'spec': self._config.to_text(),

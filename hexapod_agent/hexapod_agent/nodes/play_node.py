@@ -22,6 +22,7 @@ from rclpy.task import Future
 from hexapod_agent.deployment.deployed_agent import DeployedAgent
 from hexapod_agent.nodes import real_time
 from hexapod_agent.nodes.action_names import PLAY_RUN, TRAIN_RUN
+from hexapod_agent.specification.spec_text import changes_text
 
 PARAMETERS = (
     SYNC,
@@ -81,9 +82,8 @@ class PlayNode(Node):
         return TrainRun.Goal(
             run_id=Path(value['bag']).name or 'play',
             checkpoint=_absolute(self._checkpoint()),
-            config=_absolute(value['config']),
+            spec=changes_text(value['config'], [f'training.episodes={value["episodes"]}']),
             seed=value['seed'],
-            episodes=value['episodes'],
             bag=_absolute(value['bag']),
             record_every=1,
         )

@@ -23,3 +23,12 @@ def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any
         nested = isinstance(value, Mapping) and isinstance(found.get(key), Mapping)
         found[key] = merged(found[key], value) if nested else value
     return found
+
+
+def nest(key: str, value: Any) -> dict[str, Any]:
+    """Return the one value of a dotted key as nested values."""
+    *sections, name = key.split('.')
+    found = {name: value}
+    for section in reversed(sections):
+        found = {section: found}
+    return found

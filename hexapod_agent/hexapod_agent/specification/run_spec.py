@@ -8,7 +8,7 @@ YAML is the text form; a dotted key such as 'learner.actor.learning_rate' names 
 """
 
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Literal
 
@@ -24,12 +24,15 @@ from hexapod_sim.task import TaskConfig
 from pydantic import TypeAdapter, ValidationError
 
 from hexapod_agent.algorithms.hyperparameters import LearnerConfig, TrainingConfig
-from hexapod_agent.specification.nested import flat, merged
+from hexapod_agent.specification.nested import flat, merged, nest
 from hexapod_agent.specification.observation import ObservationSpec, parse_observations
-
-
-class ConfigError(ValueError):
-    """A specification cannot be used; the message names file, key and expectation."""
+from hexapod_agent.specification.spec_text import (
+    ConfigError,
+    changes_of,
+    parsed_setting,
+    quoted,
+    read_changes,
+)
 
 
 @dataclass(frozen=True)
@@ -113,7 +116,7 @@ class RunSpec:
         Raises:
             ConfigError: As for `from_mapping`, or it is not YAML.
         """
-        return cls.from_mapping(_parsed(text, source), source)
+        return cls.from_mapping(changes_of(text, source), source)
 
     @classmethod
     def load(cls, path: str | Path | None = None, settings: Iterable[str] = ()) -> 'RunSpec':
@@ -126,7 +129,7 @@ class RunSpec:
         Raises:
             ConfigError: The file is missing, is not YAML, or holds something unknown.
         """
-        spec = cls.from_mapping(_changes(path) if path else {}, str(path or ARTICLE))
+        spec = cls.from_mapping(read_changes(path) if path else {}, str(path or ARTICLE))
         return spec.with_settings(settings)
 
     def changed_by(self, path: str | Path) -> 'RunSpec':
@@ -135,7 +138,11 @@ class RunSpec:
         Raises:
             ConfigError: As for `load`.
         """
-        return self.changed(_changes(path), str(path))
+        return self.changed(read_changes(path), str(path))
+
+    def changed_by_text(self, text: str, source: str) -> 'RunSpec':
+        """Read YAML that changes values of this specification, as `from_text` does."""
+        return self.changed(changes_of(text, source), source)
 
     def changed(self, changes: Mapping[str, Any], source: str) -> 'RunSpec':
         """Build a specification from this one with some values changed, as `from_mapping` does."""
@@ -149,11 +156,8 @@ class RunSpec:
         """
         spec = self
         for setting in settings:
-            key, mark, value = setting.partition('=')
-            if not (key and mark):
-                raise ConfigError(f'--set {setting}: expected key=value, such as task.line_y=0.1')
-            source = f'--set {setting}'
-            spec = spec.with_value(key, _parsed_value(value, source), source)
+            key, value = parsed_setting(setting)
+            spec = spec.with_value(key, value, f'--set {setting}')
         return spec
 
     def with_value(self, key: str, value: Any, source: str) -> 'RunSpec':
@@ -162,9 +166,7 @@ class RunSpec:
         Raises:
             ConfigError: The key is unknown, or the value is not allowed.
         """
-        for name in reversed(key.split('.')):
-            value = {name: value}
-        return self.changed(value, source)
+        return self.changed(nest(key, value), source)
 
     def value(self, key: str) -> Any:
         """Return one value by its dotted key.
@@ -218,7 +220,7 @@ def _build(base: Mapping[str, Any], changes: Any, source: str) -> RunSpec:
         first = error.errors()[0]
         key = '.'.join(str(part) for part in first['loc'])
         raise ConfigError(
-            f'{source}: {key} is {first["input"]!r}, expected: {first["msg"]}'
+            f'{source}: {key} is {quoted(first["input"])}, expected: {first["msg"]}'
         ) from error
     try:
         _ = spec.learner.ddpg.group_size
@@ -237,42 +239,14 @@ def _modern(changes: Mapping[str, Any]) -> dict[str, Any]:
     return merged(kept, {'learner': moved})
 
 
-def _changes(path: str | Path) -> Any:
-    """Read a file of changes."""
-    file = Path(path).expanduser()
-    if not file.is_file():
-        raise ConfigError(
-            f'config file {str(path)!r} not found, expected a YAML file with sections of '
-            f'{", ".join(field.name for field in fields(RunSpec))}'
-        )
-    try:
-        text = file.read_text(encoding='utf-8')
-    except UnicodeDecodeError as error:
-        raise ConfigError(f'{path}: not YAML: not UTF-8 text') from error
-    return _parsed(text, str(path))
-
-
-def _parsed(text: str, source: str) -> Any:
-    """Parse YAML; an empty text changes nothing."""
-    return _parsed_value(text, source) or {}
-
-
-def _parsed_value(text: str, source: str) -> Any:
-    try:
-        return yaml.safe_load(text)
-    except yaml.YAMLError as error:
-        raise ConfigError(f'{source}: not YAML: {error}') from error
-
-
 def _check_keys(base: Mapping[str, Any], changes: Any, source: str, prefix: str) -> None:
     """Refuse keys that the base, or a section of it, does not have."""
     if not isinstance(changes, Mapping):
-        raise ConfigError(f'{source}: {prefix.rstrip(".")} is {changes!r}, expected keys')
+        raise ConfigError(f'{source}: {prefix.rstrip(".")} is {quoted(changes)}, expected keys')
     for key, value in changes.items():
         if key not in base:
-            raise ConfigError(
-                f'{source}: unknown key {f"{prefix}{key}"!r}, expected one of {", ".join(base)}'
-            )
+            unknown, known = quoted(f'{prefix}{key}'), ', '.join(base)
+            raise ConfigError(f'{source}: unknown key {unknown}, expected one of {known}')
         if isinstance(base[key], Mapping):
             _check_keys(base[key], value, source, f'{prefix}{key}.')
 

@@ -58,6 +58,18 @@ def settings(metadata: Mapping[str, str]) -> dict[str, str]:
     return found if text is None else found | dict(_flat_spec(text))
 
 
+def spec_settings(spec: RunSpec) -> dict[str, str]:
+    """Return what `settings` returns of the bag of a run of this specification."""
+    training = spec.training
+    lengths = {EPISODES: str(training.episodes), EVALUATION: str(training.evaluation)}
+    return lengths | spec_values(spec.to_mapping())
+
+
+def spec_key(key: str) -> str:
+    """Return the name of a key of the specification among the settings of a run."""
+    return f'{CONFIG}.{key}'
+
+
 def making(metadata: Mapping[str, str]) -> dict[str, str]:
     """Return what a run was made with: versions, machine and commit."""
     return {k: v for k, v in metadata.items() if k in _MAKING or k.startswith(_VERSION)}
@@ -75,6 +87,11 @@ def differences(found: Mapping[str, str], expected: Mapping[str, str]) -> str:
     ]
     more = [f'and {len(odd) - _NAMED_KEYS} more'] if len(odd) > _NAMED_KEYS else []
     return '; '.join([*odd[:_NAMED_KEYS], *more])
+
+
+def plan_differences(found: Mapping[str, str], expected: Mapping[str, str]) -> str:
+    """Return how a run differs from what is known of it, as `differences`, if that is not all."""
+    return differences({k: v for k, v in found.items() if k in expected}, expected)
 
 
 def odd_runs(runs: Mapping[str, Mapping[str, str]], without: Sequence[str] = ()) -> dict[str, str]:
@@ -133,9 +150,12 @@ def _flat_spec(text: str) -> Mapping[str, str]:
         values = text
     except ConfigError:
         pass
-    return MappingProxyType(
-        {k: v for k, v in _flattened(values, CONFIG) if not k.startswith(_COMPARED_APART)}
-    )
+    return MappingProxyType(spec_values(values))
+
+
+def spec_values(values: Any) -> dict[str, str]:
+    """Return values of a specification, nested or by dotted keys, as `settings` has them."""
+    return {k: v for k, v in _flattened(values, CONFIG) if not k.startswith(_COMPARED_APART)}
 
 
 def _flattened(values: Any, key: str) -> list[tuple[str, str]]:

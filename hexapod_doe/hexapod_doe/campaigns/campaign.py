@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from hexapod_agent.specification.run_spec import RunSpec
 
-from hexapod_doe.bags.run_bag import EVALUATION
-from hexapod_doe.bags.run_identity import settings
+from hexapod_doe.campaigns.changes import Changes
 from hexapod_doe.campaigns.row import RUNS_FOLDER, Row, read_rows
 from hexapod_doe.errors import CampaignError
 
@@ -22,44 +21,6 @@ PLAN_FILE = 'plan.csv'
 _PROBE_BYTES = 1 << 20
 _NAMED = 8
 """Rows that a message names."""
-
-
-@dataclass(frozen=True)
-class RunSettings:
-    """What all runs of a campaign have in common."""
-
-    episodes: int
-    """Length of a training."""
-    config: str = ''
-    """Hyper-parameter file on the workers; empty for theirs."""
-    record_every: int = 0
-    """Every how many episodes all topics are recorded; 0 for never."""
-
-    def loaded(self) -> RunSpec | None:
-        """Return the configuration of the runs; None where the file is on the workers alone.
-
-        Raises:
-            hexapod_agent.specification.run_spec.ConfigError: the file cannot be used.
-        """
-        here = not self.config or Path(self.config).exists()
-        return RunSpec.load(self.config or None) if here else None
-
-    def expected(self) -> dict[str, str]:
-        """Return what the bag of each run will say of them, see `bags.run_identity.settings`.
-
-        Raises:
-            hexapod_agent.specification.run_spec.ConfigError: the file cannot be used.
-        """
-        config = self.loaded()
-        if config is None:
-            return settings({'episodes': str(self.episodes)})
-        return shared_settings(config, self.episodes)
-
-
-def shared_settings(config: RunSpec, episodes: int) -> dict[str, str]:
-    """Return what the bag of each run will say of its length and configuration."""
-    evaluation = str(config.training.evaluation)
-    return settings({'episodes': str(episodes), EVALUATION: evaluation, 'spec': config.to_text()})
 
 
 @dataclass
@@ -73,8 +34,8 @@ class Campaign:
     rows: tuple[Row, ...]
     attempts: int = 3
     """How often a row may be tried before it counts as failed."""
-    shared: Mapping[str, str] = field(default_factory=dict)
-    """Length and configuration of all runs; empty where they are not known."""
+    known: bool = False
+    """Whether the specifications of the rows are those of their runs; else the plan alone is."""
     done: set[str] = field(default_factory=set)
     running: dict[str, str] = field(default_factory=dict)
     """Worker by run id."""
@@ -88,29 +49,38 @@ class Campaign:
     """Workers on which a run failed or got stuck, by run id."""
 
     @classmethod
-    def open(
-        cls, plan: Path, attempts: int = 3, shared: Mapping[str, str] | None = None
-    ) -> Campaign:
+    def open(cls, plan: Path, attempts: int = 3, changes: Changes | None = None) -> Campaign:
         """Read a plan and find out from the bags beside it which rows are done.
 
         Args:
             plan: its file.
             attempts: how often a row may be tried.
-            shared: length and configuration of all runs, see `RunSettings.expected`.
+            changes: to the specification that its runs start from; None where they are not known.
 
         Raises:
             FileNotFoundError: there is no such plan.
             hexapod_doe.designs.plan_file.PlanError: the file is not a plan.
+            hexapod_agent.specification.run_spec.ConfigError: it cannot be changed so.
         """
-        rows = read_rows(plan)
-        campaign = cls(plan.resolve().parent, rows, attempts, shared or {})
-        states = {row.run_id: row.bag_state(campaign.shared) for row in rows}
+        rows = read_rows(plan, changes)
+        campaign = cls(plan.resolve().parent, rows, attempts, changes is not None)
+        states = {row.run_id: row.bag_state(campaign.known) for row in rows}
         campaign.done = {run_id for run_id, state in states.items() if state.done}
         campaign.others = {run_id: state.other for run_id, state in states.items() if state.other}
         campaign.damaged = {
             run_id: state.damage for run_id, state in states.items() if state.damage
         }
         return campaign
+
+    @property
+    def base(self) -> RunSpec:
+        """The specification that all rows start from."""
+        return self.rows[0].treatments.base
+
+    @property
+    def due(self) -> list[Row]:
+        """Rows that are not done."""
+        return [row for row in self.rows if row.run_id not in self.done]
 
     def check_own(self) -> None:
         """Make sure that no row's place is taken by the bag of another run.
@@ -139,7 +109,9 @@ class Campaign:
         """Whether no row is due or running."""
         return not self.running and len({*self.done, *self.failed}) == len(self.rows)
 
-    def take(self, worker: str, present: Collection[str] = ()) -> Row | None:
+    def take(
+        self, worker: str, present: Collection[str] = (), among: Collection[str] | None = None
+    ) -> Row | None:
         """Give the next row that is due to a worker.
 
         A row that failed on a worker goes to another one, if there is one that has not tried it.
@@ -147,8 +119,11 @@ class Campaign:
         Args:
             worker: by name.
             present: all workers that there are.
+            among: run ids of the rows that it can take; None for all.
         """
         gone = {*self.done, *self.running, *self.failed}
+        if among is not None:
+            gone |= {row.run_id for row in self.rows} - set(among)
         for row in self.rows:
             tried = self.tried.get(row.run_id, set())
             if row.run_id in gone or (worker in tried and not tried.issuperset(present)):
@@ -162,7 +137,7 @@ class Campaign:
 
     def has_bag(self, row: Row) -> bool:
         """Whether a row has its bag, whoever made it."""
-        return row.bag_state(self.shared).done
+        return row.bag_state(self.known).done
 
     def complete(self, row: Row, reason: str = '') -> bool:
         """Count a row as done if its bag is whole and its own; return whether it is.
@@ -171,7 +146,7 @@ class Campaign:
             row: whose run has ended.
             reason: why it failed if the bag is not whole, where something is known.
         """
-        state = row.bag_state(self.shared)
+        state = row.bag_state(self.known)
         if state.other:
             self.fail(row, f'bag {row.bag} is of another run: {state.other}')
             return False

@@ -23,14 +23,11 @@ _FINISHED_SHOWN = 8
 class Dashboard:
     """Follows a campaign through what its manager tells, and shows it."""
 
-    def __init__(
-        self, campaign: Campaign, episodes_per_row: int, console: Console | None = None
-    ) -> None:
+    def __init__(self, campaign: Campaign, console: Console | None = None) -> None:
         """Begin with the rows that are done.
 
         Args:
             campaign: whose failures are shown, too.
-            episodes_per_row: of each training.
             console: where to show it; the terminal unless given.
         """
         self._campaign = campaign
@@ -39,11 +36,12 @@ class Dashboard:
         self._began: dict[str, float] = {}
         self._finished: list[Run] = []
         self._last_log = time.monotonic()
-        runs = [Run(r.run_id, r.observations, planned=episodes_per_row) for r in campaign.rows]
+        length = campaign.base.training.episodes
+        runs = [Run(r.run_id, r.observations, planned=length) for r in campaign.rows]
         for run in runs:
             if run.run_id in campaign.done:
                 run.state = State.DONE
-                run.returns = [math.nan] * episodes_per_row  # counted, but not seen
+                run.returns = [math.nan] * length  # counted, but not seen
         self.progress = Progress(campaign.directory.name, {run.run_id: run for run in runs})
         self._console = console or Console(highlight=False)
         self._live = Live(

@@ -5,13 +5,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from contextlib import ExitStack
 from datetime import datetime
 from types import TracebackType
 from typing import Self
 
 from hexapod_agent.learning.summary import EpisodeSummary
-from hexapod_agent.specification.run_spec import RunSpec
+from hexapod_agent.specification.run_spec import ConfigError
 
 from hexapod_doe.campaigns.campaign import Campaign
 from hexapod_doe.campaigns.campaign_lock import row_lock
@@ -31,8 +32,6 @@ class FleetCampaign:
     def __init__(
         self,
         campaign: Campaign,
-        config: RunSpec,
-        episodes: int,
         device: str,
         began: datetime,
     ) -> None:
@@ -40,15 +39,12 @@ class FleetCampaign:
 
         Args:
             campaign: whose rows.
-            config: of every run.
-            episodes: of a training.
             device: where the networks are.
             began: when the command was given; what failed since, in whatever process, is not
                 tried again.
         """
-        self._campaign, self._config = campaign, config
-        self._episodes, self._device = episodes, device
-        self._dashboard = Dashboard(campaign, episodes)
+        self._campaign, self._device = campaign, device
+        self._dashboard = Dashboard(campaign)
         self._page = PageWriter(campaign.directory, self._dashboard.log)
         self._locks: dict[str, ExitStack] = {}
         self._elsewhere: set[str] = set()
@@ -67,14 +63,27 @@ class FleetCampaign:
         self._page.close()
         self._dashboard.close()
 
-    def take(self) -> FleetRow | None:
+    def take(self, among: Collection[str]) -> FleetRow | None:
         """Begin the next row that is due and that no other process is at.
+
+        Args:
+            among: run ids of those that may be begun.
 
         Raises:
             BagError: its bag cannot be written.
         """
+        while (row := self._next(among)) is not None:
+            self._dashboard.begin(_place(row), row.run_id, row.observations)
+            self._page.refresh()
+            try:
+                return FleetRow(row, self._device, self)
+            except ConfigError as error:  # of this row alone
+                self.end(row, error)
+        return None
+
+    def _next(self, among: Collection[str]) -> Row | None:
         elsewhere = []
-        while (row := self._campaign.take(_NAME)) is not None:
+        while (row := self._campaign.take(_NAME, among=among)) is not None:
             if not self._lock(row):
                 elsewhere.append(row)
             elif self._campaign.has_bag(row) or self._in_vain(row):  # another process was at it
@@ -84,11 +93,7 @@ class FleetCampaign:
                 break
         for each in elsewhere:  # due again, should that process leave it
             self._campaign.release(each)
-        if row is None:
-            return None
-        self._dashboard.begin(_place(row), row.run_id, row.observations)
-        self._page.refresh()
-        return FleetRow(row, self._config, self._episodes, self._device, self)
+        return row
 
     def _in_vain(self, row: Row) -> str:
         """Return why the row failed since the command was given, '' if it did not."""

@@ -14,7 +14,6 @@ from hexapod_agent.learning.event_log import EventLog
 from hexapod_agent.learning.provenance import provenance
 from hexapod_agent.learning.summary import EpisodeSummary
 from hexapod_agent.learning.training import Trainer
-from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 
 from hexapod_doe.bags.carry_over import carry_over, find_cut
@@ -64,20 +63,17 @@ class FleetRow:
         episodes: how many it is to have.
     """
 
-    def __init__(
-        self, row: Row, config: RunSpec, episodes: int, device: str, watch: Watch
-    ) -> None:
+    def __init__(self, row: Row, device: str, watch: Watch) -> None:
         """Begin the row, or go on where an earlier process left it.
 
         Raises:
             BagError: the bag cannot be written, or is being written by somebody else.
         """
-        self.row, self.episodes, self._watch = row, episodes, watch
+        self.row, self.episodes, self._watch = row, row.spec.training.episodes, watch
         set_aside(row.bag)
-        config = config.observing(row.observations)
-        self.trainer, cut = self._begin(config)
+        self.trainer, cut = self._begin()
         done = self.trainer.episode
-        metadata = _metadata(row, config, episodes, device)
+        metadata = _metadata(row, device)
         if cut is not None:
             metadata[RESUMED] = str(done)
         self._recording = Recording(row.run_id, row.bag, metadata, CONTROL_PERIOD_NS)
@@ -89,11 +85,11 @@ class FleetRow:
             self._last_ns = carry_over(self._recording, cut, done, _RESULTS.name)
         self._events = EventLog(Path(f'{row.bag}.tensorboard'), done)
 
-    def _begin(self, config: RunSpec) -> tuple[Trainer, Path | None]:
+    def _begin(self) -> tuple[Trainer, Path | None]:
         """Return the row's trainer and, where it goes on, the bag with the episodes it has had."""
         row = self.row
         try:
-            trainer = run_checkpoint.resumed(row.bag, config, row.seed, self.episodes)
+            trainer = run_checkpoint.resumed(row.bag, row.spec, row.seed)
         except CheckpointError as error:
             self._watch.log(f'run {row.run_id} begins anew: {error}')
             trainer = None
@@ -105,7 +101,7 @@ class FleetRow:
                 f'run {row.run_id} begins anew: no recording holds the {trainer.episode} episodes '
                 'before its checkpoint'
             )
-        return Trainer(config, row.seed), None
+        return Trainer(row.spec, row.seed), None
 
     @property
     def saves_next(self) -> bool:
@@ -165,17 +161,17 @@ class FleetRow:
         self._watch.end(self.row, error)
 
 
-def _metadata(row: Row, config: RunSpec, episodes: int, device: str) -> dict[str, str]:
+def _metadata(row: Row, device: str) -> dict[str, str]:
     """Return what the bag says of the run: as the graph's does, but that no topic was needed."""
     return {
         **row.metadata,
-        'observations': config.letters,
+        'observations': row.spec.letters,
         'seed': str(row.seed),
         'mode': 'train',
-        'episodes': str(episodes),
-        'window': str(config.training.window),
-        EVALUATION: str(config.training.evaluation),
-        'spec': config.to_text(),
+        'episodes': str(row.spec.training.episodes),
+        'window': str(row.spec.training.window),
+        EVALUATION: str(row.spec.training.evaluation),
+        'spec': row.spec.to_text(),
         'subscriptions': '',
         'device': device,
         **provenance(),

@@ -57,7 +57,7 @@ def read_row(row: Row) -> Run:
     """Read how far a row is from its bag, whole, unfinished or not there."""
     run = Run(row.run_id, row.observations)
     partial = partial_path(row.bag)
-    bag = row.bag_state({})
+    bag = row.bag_state()
     if bag.other:
         run.state, run.reason = State.OTHER, bag.other
     elif bag.whole:
@@ -69,6 +69,7 @@ def read_row(row: Row) -> Run:
         _read_unfinished(run, file)
     elif bag.damage:
         run.state, run.reason = State.DAMAGED, bag.damage
+    run.settings = row.without_varied(run.settings)
     return run
 
 

@@ -5,48 +5,40 @@
 
 from __future__ import annotations
 
-from hexapod_agent.specification.run_spec import RunSpec
+from collections.abc import Sequence
 
-from hexapod_doe.bags.run_identity import odd_runs
-from hexapod_doe.campaigns.campaign import shared_settings
+from hexapod_agent.specification.run_spec import RunSpec
 
 SECONDS_PER_STEP = 0.0037
 """Of a worker's processor per control period, with article.yaml on shared cores: docs/fleet.md."""
-_ELSE = ('evaluation', 'config.task', 'config.cpg', 'config.learner.noise', 'config.training')
-"""Sections of the configuration that hardly change the time of a step."""
+_ELSE = ('observations.', 'sensors.', 'task.', 'cpg.', 'learner.noise.', 'training.')
+"""What hardly changes the time of a step."""
 _HOUR_S = 3600.0
 
 
-def forecast(due: int, episodes: int, workers: int, config: RunSpec | None) -> str:
+def forecast(due: Sequence[RunSpec], workers: int) -> str:
     """Return how much there is to train, and how long that may take.
 
     Args:
-        due: runs.
-        episodes: of each run.
+        due: the specifications of the runs, all of one length.
         workers: side by side on this machine; 0 where they are elsewhere.
-        config: of the runs, if it is known.
     """
-    what = f'{due} runs of {episodes} episodes to train'
+    what = f'{len(due)} runs of {due[0].training.episodes} episodes to train'
     later = 'the first episodes will tell how long that takes'
-    if not workers or config is None or not _as_measured(config):
+    if not workers or not all(map(_as_measured, due)):
         return f'{what}; {later}'
-    steps = due * episodes * config.task.time_limit_steps
-    seconds = steps * SECONDS_PER_STEP / min(workers, due)
-    side = f'{min(workers, due)} at a time' if min(workers, due) > 1 else 'one at a time'
+    steps = sum(spec.training.episodes * spec.task.time_limit_steps for spec in due)
+    seconds = steps * SECONDS_PER_STEP / min(workers, len(due))
+    side = f'{min(workers, len(due))} at a time' if min(workers, len(due)) > 1 else 'one at a time'
     return (
         f'{what}, {side}: about {_rounded(seconds)}, judged by two cores of a shared EPYC host; '
         f'{later} here'
     )
 
 
-def _as_measured(config: RunSpec) -> bool:
+def _as_measured(spec: RunSpec) -> bool:
     """Whether the learner is article.yaml's: another one takes another time."""
-    odd = odd_runs({'found': _shared(config), 'expected': _shared(RunSpec.load())})
-    return all(key.startswith(_ELSE) for key in odd)
-
-
-def _shared(config: RunSpec) -> dict[str, str]:
-    return shared_settings(config, 1)
+    return all(key.startswith(_ELSE) for key in spec.differences(RunSpec.load()))
 
 
 def _rounded(seconds: float) -> str:

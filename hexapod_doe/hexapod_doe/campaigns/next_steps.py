@@ -9,13 +9,12 @@ import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
-from hexapod_agent.specification.run_spec import RunSpec
-
-from hexapod_doe.bags.run_identity import differences
-from hexapod_doe.campaigns.campaign import PLAN_FILE, shared_settings
+from hexapod_doe.bags.run_identity import EPISODES, differences
+from hexapod_doe.campaigns.campaign import PLAN_FILE
 from hexapod_doe.campaigns.folder import read_progress
 from hexapod_doe.campaigns.plan_copy import CONFIG_FILE
 from hexapod_doe.campaigns.progress import Progress, Run, State
+from hexapod_doe.campaigns.row import read_rows
 from hexapod_doe.designs.plan_file import read_plan
 
 CONFIRM_FOLDER = 'confirm'
@@ -96,12 +95,12 @@ def _train(folder: Path, progress: Progress, plan: Path) -> str:
 
 
 def _config(folder: Path, begun: Sequence[Run]) -> str:
-    """Return the hyper-parameter file of runs; 'FILE' where the folder lacks it, '' for none."""
+    """Return the file of what runs start from; 'FILE' where the folder lacks it, '' for none."""
     if (folder / CONFIG_FILE).is_file():
         return _quoted(folder / CONFIG_FILE)
     if not begun:
         return ''
-    expected = shared_settings(RunSpec.load(), begun[0].planned)
+    expected = read_rows(folder / PLAN_FILE)[0].shared | {EPISODES: str(begun[0].planned)}
     return 'FILE' if differences(begun[0].settings, expected) else ''
 
 

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import tempfile
 from pathlib import Path
@@ -12,10 +13,10 @@ from pathlib import Path
 from hexapod_agent.specification.run_spec import RunSpec
 
 from hexapod_doe.campaigns.campaign import PLAN_FILE
-from hexapod_doe.designs.plan_file import PlanError
+from hexapod_doe.designs.plan_file import PlanError, read_plan
 
 CONFIG_FILE = 'config.yaml'
-"""Where a campaign's folder has the specification of its runs, if that is not article.yaml."""
+"""Where a campaign's folder has what its runs start from, if that is not its plan's base."""
 
 
 def place_plan(plan: Path, out: Path | None) -> Path:
@@ -39,23 +40,37 @@ def place_plan(plan: Path, out: Path | None) -> Path:
         source, target = plan.with_suffix(suffix), there.with_suffix(suffix)
         if not target.exists() and (suffix == '.csv' or source.is_file()):
             _copy(source, target)
-    if there.read_bytes() != plan.read_bytes():
+    if there.read_bytes() != plan.read_bytes() or _factors(there) != _factors(plan):
         raise PlanError(f'{there}: another plan than {plan}, expected the same or none')
     return there
 
 
-def keep_config(directory: Path, config: RunSpec | None) -> None:
-    """Write what a campaign's runs have other than article.yaml into its folder, if it is known.
+def _factors(plan: Path) -> object:
+    """Return what stands in a plan's settings of what its columns mean."""
+    settings = plan.with_suffix('.json')
+    if not settings.is_file():
+        return None
+    try:
+        found = json.loads(settings.read_text(encoding='utf-8'))
+        return found.get('factors'), found.get('base')
+    except (ValueError, AttributeError) as error:
+        raise PlanError(f'{settings}: not the settings of a plan ({error})') from error
+
+
+def keep_config(plan: Path, base: RunSpec) -> None:
+    """Write what a campaign's runs start from beside its plan, if the plan has it otherwise.
+
+    Their length alone is told by each bag.
 
     Raises:
         OSError: the folder cannot be written.
     """
-    if config is None or not config.differences(RunSpec.load()):
+    if base.differences(read_plan(plan).treatments.base).keys() <= {'training.episodes'}:
         return
-    kept = directory / CONFIG_FILE
-    with tempfile.TemporaryDirectory(dir=directory, prefix='.config') as drafts:
+    kept = plan.parent / CONFIG_FILE
+    with tempfile.TemporaryDirectory(dir=plan.parent, prefix='.config') as drafts:
         draft = Path(drafts) / CONFIG_FILE
-        draft.write_text(config.to_text(), encoding='utf-8')
+        draft.write_text(base.to_text(), encoding='utf-8')
         draft.replace(kept)
 
 

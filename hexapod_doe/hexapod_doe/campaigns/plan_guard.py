@@ -32,7 +32,7 @@ def check_free(plan: Plan, out: Path) -> None:
             f'{out}: a plan with runs ({_count(begun)} in {directory / RUNS_FOLDER}), expected '
             'none; give --out in a folder of its own, or remove plan and runs first'
         )
-    others = {row.run_id: state.other for row in rows if (state := row.bag_state({})).other}
+    others = {row.run_id: state.other for row in rows if (state := row.bag_state()).other}
     if others:
         run_id, why = next(iter(others.items()))
         raise PlanError(
@@ -55,8 +55,8 @@ def _rows_of_file(path: Path) -> tuple[Row, ...] | None:
         return None
 
 
-def _alike(rows: Sequence[Row]) -> list[dict[str, str]]:
-    return [dict(row.metadata) for row in rows]
+def _alike(rows: Sequence[Row]) -> list[tuple[object, ...]]:
+    return [(dict(row.metadata), row.treatments) for row in rows]
 
 
 def _count(run_ids: Sequence[str]) -> str:

@@ -52,7 +52,7 @@ class Run:
     earlier: int = 0
     """Episodes that it already had then."""
     settings: Mapping[str, str] = field(default_factory=dict)
-    """Its length and configuration, as its bag states them."""
+    """Its length and what is not varied of its specification, as its bag states them."""
     reason: str = ''
     """Why it failed, or how the run in its place differs from it."""
 

@@ -14,7 +14,15 @@ from pathlib import Path
 from hexapod_agent.specification.run_spec import RunSpec
 
 from hexapod_doe.bags.bag_state import sound_metadata
-from hexapod_doe.bags.run_identity import differences, run_identity
+from hexapod_doe.bags.run_identity import (
+    differences,
+    plan_differences,
+    run_identity,
+    spec_key,
+    spec_settings,
+    spec_values,
+)
+from hexapod_doe.campaigns.changes import Changes
 from hexapod_doe.designs.factor import FACTORS, Treatments
 from hexapod_doe.designs.plan_file import read_plan
 from hexapod_doe.designs.plan_types import Plan
@@ -49,15 +57,41 @@ class Row:
         return self.treatments.spec(self.levels)
 
     @property
-    def identity(self) -> dict[str, str]:
-        """What the plan says of the run: its sensors and its seed."""
-        return run_identity({'observations': self.observations, 'seed': str(self.seed)})
+    def varied(self) -> frozenset[str]:
+        """What differs between the runs of the plan, by its names among their settings."""
+        return frozenset(spec_key(factor.key) for factor in self.treatments.factors if factor.key)
 
-    def bag_state(self, shared: Mapping[str, str]) -> BagState:
+    @property
+    def shared(self) -> dict[str, str]:
+        """What all runs of the plan have in common, see `bags.run_identity.settings`."""
+        return self.without_varied(spec_settings(self.treatments.base))
+
+    def without_varied(self, settings: Mapping[str, str]) -> dict[str, str]:
+        """Return the settings of a run that others of the plan should have, too."""
+        return {key: value for key, value in settings.items() if key not in self.varied}
+
+    @property
+    def identity(self) -> dict[str, str]:
+        """What the plan says of the run, whatever base it is trained on: factors and seed."""
+        found = run_identity({'observations': self.observations, 'seed': str(self.seed)})
+        pairs = zip(self.treatments.factors, self.levels, strict=True)
+        return found | spec_values({f.key: f.value(level) for f, level in pairs if f.key})
+
+    @property
+    def expected(self) -> dict[str, str]:
+        """What decides the run, all of it.
+
+        Raises:
+            hexapod_agent.specification.run_spec.ConfigError: a factor has no key.
+        """
+        own = {'observations': self.spec.letters, 'seed': str(self.seed)}
+        return run_identity(own) | spec_settings(self.spec)
+
+    def bag_state(self, whole: bool = False) -> BagState:
         """Say whether there is a whole bag at the row's place, and whether it is the row's.
 
         Args:
-            shared: what all runs are to have in common, see `settings`; empty where unknown.
+            whole: whether the base of the row is that of the run; else the plan alone is known.
         """
         if not os.path.lexists(self.bag):
             return BagState(whole=False)
@@ -65,7 +99,11 @@ class Row:
             found = sound_metadata(self.bag)
         except BagError as error:
             return BagState(whole=False, damage=str(error))
-        return BagState(True, differences(run_identity(found), self.identity | dict(shared)))
+        run = run_identity(found)
+        return BagState(
+            True,
+            differences(run, self.expected) if whole else plan_differences(run, self.identity),
+        )
 
 
 @dataclass(frozen=True)
@@ -84,20 +122,25 @@ class BagState:
         return self.whole and not self.other
 
 
-def read_rows(plan: Path) -> tuple[Row, ...]:
+def read_rows(plan: Path, changes: Changes | None = None) -> tuple[Row, ...]:
     """Read the rows of a plan in its run order; their bags are to lie beside it.
+
+    Args:
+        plan: its file.
+        changes: to the specification that its runs start from.
 
     Raises:
         FileNotFoundError: there is no such plan.
         hexapod_doe.designs.plan_file.PlanError: the file is not a plan.
+        hexapod_agent.specification.run_spec.ConfigError: it cannot be changed so.
     """
-    return rows_of(read_plan(plan), plan.resolve().parent)
+    return rows_of(read_plan(plan), plan.resolve().parent, changes)
 
 
-def rows_of(plan: Plan, directory: Path) -> tuple[Row, ...]:
+def rows_of(plan: Plan, directory: Path, changes: Changes | None = None) -> tuple[Row, ...]:
     """Return the rows of a plan in its run order; their bags are to lie in a campaign's folder."""
-    treatments = plan.treatments
-    factors = {} if treatments.default else {FACTORS: treatments.factors_text}
+    treatments = (changes or Changes()).applied(plan.treatments)
+    factors = {} if plan.treatments.default else {FACTORS: treatments.factors_text}
     return tuple(
         Row(
             run_id=row['run_id'],

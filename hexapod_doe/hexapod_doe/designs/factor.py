@@ -20,7 +20,7 @@ FACTORS = 'factors'
 OBSERVATIONS = 'observations.'
 """What the key of a sensor begins with."""
 _SENSORS = {channel.letter: channel for channel in CHANNELS if channel.letter}
-_PER_RUN = ('training.episodes',)
+_PER_RUN = ('training.episodes', 'training.evaluation')
 """Keys that a campaign sets for all of its runs."""
 
 

@@ -24,7 +24,6 @@ from hexapod_sim.nodes.sim_node import SimNode
 from rclpy.signals import uninstall_signal_handlers
 from rclpy.task import Future
 
-from hexapod_doe.campaigns.campaign import RunSettings
 from hexapod_doe.campaigns.row import Row
 from hexapod_doe.nodes.recorder_node import RecorderNode
 from hexapod_doe.nodes.train_goal import train_goal
@@ -41,10 +40,10 @@ class CaseNode(Node):
         exit_status: 0 once the row is trained, 1 once it has failed or was stopped, None before.
     """
 
-    def __init__(self, row: Row, settings: RunSettings, stall_s: float) -> None:
+    def __init__(self, row: Row, record_every: int, stall_s: float) -> None:
         super().__init__('case')
         self.exit_status: int | None = None
-        self._row, self._settings = row, settings
+        self._row, self._record_every = row, record_every
         client = ActionClient(self, TrainRun, TRAIN_RUN)
         self._worker = WorkerClient(self, client, self.get_namespace(), stall_s)
         start(self._train()).add_done_callback(self._on_end)
@@ -54,7 +53,7 @@ class CaseNode(Node):
         if not await until_true(self, self._worker.present, _READY_S):
             return f'no worker within {_READY_S:g} s, expected the one of this process'
         try:
-            goal = train_goal(self._row, self._settings)
+            goal = train_goal(self._row, self._record_every)
             ended = await self._worker.train(goal, self._on_episode)
         except WorkerLostError as error:
             return str(error)
@@ -66,8 +65,8 @@ class CaseNode(Node):
 
     def _on_episode(self, episode: int, episode_return: float) -> None:
         self.get_logger().info(
-            f'{self._row.run_id}: episode {episode + 1} of {self._settings.episodes}, '
-            f'return {episode_return:.1f}',
+            f'{self._row.run_id}: episode {episode + 1} of '
+            f'{self._row.spec.training.episodes}, return {episode_return:.1f}',
             throttle_duration_sec=_LOG_S,
         )
 
@@ -78,7 +77,7 @@ class CaseNode(Node):
         self.exit_status = 1 if reason else 0
 
 
-def train_row(row: Row, settings: RunSettings, stall_s: float) -> None:
+def train_row(row: Row, record_every: int, stall_s: float) -> None:
     """Train a row on a worker that nobody outside this process can see.
 
     Raises:
@@ -88,13 +87,13 @@ def train_row(row: Row, settings: RunSettings, stall_s: float) -> None:
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'OFF'
     free_abandoned()
     namespace = ['--ros-args', '-r', f'__ns:=/{row.run_id}']
-    files = root_arguments(Path(row.bag).resolve().parent, settings.config)
-    run(partial(_make_nodes, row, settings, stall_s), [*namespace, *files])
+    files = root_arguments(Path(row.bag).resolve().parent)
+    run(partial(_make_nodes, row, record_every, stall_s), [*namespace, *files])
 
 
-def _make_nodes(row: Row, settings: RunSettings, stall_s: float) -> list[Node]:
+def _make_nodes(row: Row, record_every: int, stall_s: float) -> list[Node]:
     worker: list[Node] = [SimNode(), CpgNode(), RecorderNode(), AgentNode()]
-    case = CaseNode(row, settings, stall_s)
+    case = CaseNode(row, record_every, stall_s)
     # The middleware's own handlers would end it under the feet of a worker at work.
     uninstall_signal_handlers()
     for number in (signal.SIGINT, signal.SIGTERM):

@@ -30,8 +30,9 @@ from hexapod_node.timers import call_every
 from rclpy.action import get_action_names_and_types
 from rclpy.task import Future
 
-from hexapod_doe.campaigns.campaign import Campaign, RunSettings
+from hexapod_doe.campaigns.campaign import Campaign
 from hexapod_doe.campaigns.campaign_lock import campaign_lock
+from hexapod_doe.campaigns.changes import Changes
 from hexapod_doe.campaigns.dashboard import Dashboard
 from hexapod_doe.campaigns.failures import FailureLog
 from hexapod_doe.campaigns.forecast import forecast
@@ -50,8 +51,16 @@ _BUSY_S = 2.0
 
 PARAMETERS = (
     Parameter('plan', '', 'plan.csv of the campaign; its bags lie beside it, under runs/'),
-    Parameter('episodes', 1000, 'episodes of a training', range=(1, 1_000_000)),
-    Parameter('config', '', 'hyper-parameter file on the workers; empty: article.yaml'),
+    Parameter(
+        'episodes',
+        0,
+        'episodes of a training; 0: `training.episodes` of the specification',
+        range=(0, 1_000_000),
+    ),
+    Parameter(
+        'config', '', "file of changes to the specification of the plan's runs; empty for none"
+    ),
+    Parameter('set', [''], "further changes, each as 'key=value'"),
     Parameter(
         'record_every',
         100,
@@ -65,7 +74,7 @@ PARAMETERS = (
         'worker_command',
         'ros2 run hexapod_bringup worker_node --ros-args -r __ns:=/{name} {files}',
         'what starts a local worker; {name} stands for its namespace, {files} for the parameters '
-        'that let it use the folder of the campaign and the file `config`',
+        'that let it use the folder of the campaign',
     ),
     Parameter(
         'worker_timeout',
@@ -96,14 +105,10 @@ class ManagerNode(Node):
             raise FileNotFoundError(f"plan '{plan}': no such file, expected a plan.csv of `plan`")
         self._held = ExitStack()
         self._held.enter_context(campaign_lock(plan.resolve().parent))
-        self._settings = RunSettings(
-            self._parameter('episodes'), self._parameter('config'), self._parameter('record_every')
-        )
-        self._campaign = Campaign.open(
-            plan, self._parameter('attempts'), self._settings.expected()
-        )
+        changes = Changes.of(*(self._parameter(name) for name in ('config', 'set', 'episodes')))
+        self._campaign = Campaign.open(plan, self._parameter('attempts'), changes)
         self._campaign.check_own()
-        keep_config(self._campaign.directory, self._settings.loaded())
+        keep_config(plan.resolve(), self._campaign.base)
         self._failures = FailureLog(self._campaign.directory)
         self._failures.clear()
         self._workers: dict[str, WorkerClient] = {}
@@ -112,18 +117,15 @@ class ManagerNode(Node):
         self._alone_since = time.monotonic()
         self._fault: Exception | None = None
         self.exit_status: int | None = None
-        self._dashboard = Dashboard(self._campaign, self._parameter('episodes'))
+        self._dashboard = Dashboard(self._campaign)
         for run_id, damage in self._campaign.damaged.items():
             self._dashboard.log(f'{run_id} is trained anew: {damage}')
         self._page = PageWriter(self._campaign.directory, self._dashboard.log)
         self._status_publisher = self.create_publisher(CampaignStatus, '~/status', LATCHED)
         count = 0 if self._campaign.finished else self._worker_count()
-        if due := len(self._campaign.rows) - len(self._campaign.done):
-            length, config = self._settings.episodes, self._settings.loaded()
-            self._dashboard.log(forecast(due, length, count, config))
-        files = root_arguments(
-            (self._campaign.directory / RUNS_FOLDER).resolve(), self._parameter('config')
-        )
+        if due := self._campaign.due:
+            self._dashboard.log(forecast([row.spec for row in due], count))
+        files = root_arguments((self._campaign.directory / RUNS_FOLDER).resolve())
         logs = self._campaign.directory / 'logs'
         command = self._parameter('worker_command')
         self._local = LocalWorkers(count, command, logs, shlex.join(files))
@@ -200,7 +202,7 @@ class ManagerNode(Node):
         """Have a worker train one row, and judge what comes back."""
         try:
             ended = await worker.train(
-                train_goal(row, self._settings),
+                train_goal(row, self._parameter('record_every')),
                 partial(self._dashboard.episode, worker.name, row.run_id),
                 partial(self._on_begin, worker, row),
             )

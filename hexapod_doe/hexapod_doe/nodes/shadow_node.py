@@ -96,7 +96,9 @@ class ShadowNode(Node):
             action = self.resolve_topic_name(PLAY_RUN)
             raise BagError(f'action {action}: no server within {timeout_s:g} s, expected agent')
         goal = TrainRun.Goal(
-            run_id='shadow', checkpoint=str(checkpoint.resolve()), episodes=len(self._spans)
+            run_id='shadow',
+            checkpoint=str(checkpoint.resolve()),
+            spec=f'training: {{episodes: {len(self._spans)}}}',
         )
         handle = await until(self._client.send_goal_async(goal))
         response = await until(handle.get_result_async())

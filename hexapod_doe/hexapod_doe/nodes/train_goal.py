@@ -8,20 +8,22 @@ from __future__ import annotations
 from diagnostic_msgs.msg import KeyValue
 from hexapod_interfaces.action import TrainRun
 
-from hexapod_doe.campaigns.campaign import RunSettings
 from hexapod_doe.campaigns.row import Row
 
 
-def train_goal(row: Row, settings: RunSettings) -> TrainRun.Goal:
-    """Return the goal that trains a row, or goes on with what was begun of it."""
+def train_goal(row: Row, record_every: int) -> TrainRun.Goal:
+    """Return the goal that trains a row, or goes on with what was begun of it.
+
+    Args:
+        row: of a plan.
+        record_every: every how many episodes all topics are recorded; 0 for never.
+    """
     return TrainRun.Goal(
         run_id=row.run_id,
-        observations=row.observations,
+        spec=row.spec.to_text(),
         seed=row.seed,
-        episodes=settings.episodes,
-        config=settings.config,
         bag=str(row.bag),
-        record_every=settings.record_every,
+        record_every=record_every,
         resume=True,
         metadata=[KeyValue(key=key, value=value) for key, value in row.metadata.items()],
     )

@@ -12,7 +12,7 @@ from functools import cached_property
 from pathlib import Path
 
 from hexapod_doe.bags.bag_state import sound_metadata
-from hexapod_doe.bags.run_identity import differences, run_identity
+from hexapod_doe.bags.run_identity import plan_differences, run_identity
 from hexapod_doe.bags.run_record import RunRecord, read_run
 from hexapod_doe.campaigns.campaign import PLAN_FILE
 from hexapod_doe.campaigns.row import rows_of
@@ -45,7 +45,9 @@ class Part:
     def difference(self, run: RunRecord) -> str | None:
         """Say how a run differs from its row; '' if it does not, None if there is no such row."""
         expected = self.expected.get(run.run_id)
-        return None if expected is None else differences(run_identity(run.metadata), expected)
+        if expected is None:
+            return None
+        return plan_differences(run_identity(run.metadata), expected)
 
     @property
     def follows(self) -> bool:

@@ -91,7 +91,7 @@ def train_fleet() -> Callable[..., Fleet]:
                 if stacked
                 else SeparateLearners(crew)
             )
-            fleet = Fleet(Robots(config, places), learners, crew, places)
+            fleet = Fleet(Robots(places), learners, crew, places)
             fleet.train(partial(next, iter(runs), None))
         return fleet
 

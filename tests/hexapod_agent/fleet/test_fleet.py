@@ -79,6 +79,26 @@ def test_bad_sensors_are_as_bad_in_a_fleet(small_config, new_run, train_alone, t
     assert fleet[0].summaries[0].episode_return != perfect.summaries[0].episode_return
 
 
+def test_runs_of_other_specifications_equal_those_trained_alone(
+    small_config, new_run, train_alone, train_fleet
+):
+    settings = (
+        [],
+        ['cpg.hopf.gait=wave', 'task.closeness_weight=0'],
+        ['cpg.ranges.hip_gain=[0.2, 0.1]', 'learner.actor.hidden=[8]', 'task.line_y=0.3'],
+        ['task.time_limit_steps=30', 'learner.ddpg.n_step=3', 'learner.actor.learning_rate=1e-3'],
+    )
+    configs = [small_config.with_settings(each) for each in settings]
+    fleet = [new_run(config, 'CE', seed) for seed, config in enumerate(configs)]
+    train_fleet(fleet, places=2)
+    for seed, (run, config) in enumerate(zip(fleet, configs, strict=True)):
+        alone = train_alone(new_run(config, 'CE', seed))
+        assert run.end == 'ended'
+        assert_same_results(run, alone)
+        assert_same_state(run, alone)
+    assert len({run.summaries[0].episode_return for run in fleet}) == len(fleet)
+
+
 @pytest.mark.parametrize('name', ['small_config', 'switched_config'])
 def test_a_stack_learns_what_its_runs_learn_alone(
     name, request, new_run, train_alone, train_fleet

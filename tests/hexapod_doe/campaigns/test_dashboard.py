@@ -5,6 +5,7 @@ import io
 
 import pytest
 from hexapod_doe.campaigns.campaign import PLAN_FILE, Campaign
+from hexapod_doe.campaigns.changes import Changes
 from hexapod_doe.campaigns.dashboard import Dashboard
 from hexapod_doe.campaigns.progress import State
 from rich.console import Console
@@ -15,9 +16,11 @@ class Shown:
 
     def __init__(self, folder, terminal: bool) -> None:
         self.text = io.StringIO()
-        self.campaign = Campaign.open(folder.directory / PLAN_FILE, attempts=1)
+        self.campaign = Campaign.open(
+            folder.directory / PLAN_FILE, attempts=1, changes=Changes.of(None, (), 5)
+        )
         console = Console(file=self.text, force_terminal=terminal, width=120, highlight=False)
-        self.dashboard = Dashboard(self.campaign, 5, console)
+        self.dashboard = Dashboard(self.campaign, console)
 
     def run(self, run_id: str) -> None:
         """Play a whole run on the worker w1."""

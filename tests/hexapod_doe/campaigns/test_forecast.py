@@ -16,14 +16,20 @@ from hexapod_doe.campaigns.forecast import SECONDS_PER_STEP, forecast
     ],
 )
 def test_a_campaign_says_before_it_starts_how_long_it_takes_about(due, episodes, workers, told):
-    config = RunSpec.load()
-    assert config.task.time_limit_steps == 600
+    spec = RunSpec.load(None, [f'training.episodes={episodes}'])
+    assert spec.task.time_limit_steps == 600
     assert SECONDS_PER_STEP == 0.0037
-    assert told in forecast(due, episodes, workers, config)
+    assert told in forecast([spec] * due, workers)
 
 
 def test_what_was_not_measured_is_not_foretold():
     small = RunSpec.from_mapping({'actor': {'hidden': [8, 8]}}, 'test')
     later = '4 runs of 9 episodes to train; the first episodes will tell how long that takes'
-    for workers, config in ((2, small), (0, RunSpec.load()), (2, None)):
-        assert forecast(4, 9, workers, config) == later
+    for workers, odd in ((2, small), (0, RunSpec.load())):
+        specs = [spec.with_value('training.episodes', 9, 'test') for spec in (odd, RunSpec.load())]
+        assert forecast([*specs, *specs], workers) == later
+
+
+def test_the_time_of_rows_that_differ_is_added_up():
+    short, long = (RunSpec.load(None, [f'task.time_limit_steps={n}']) for n in (600, 1800))
+    assert 'about 98 h' in forecast([short] * 160 + [long] * 53, 2)

@@ -41,6 +41,13 @@ def test_another_plan_is_not_replaced(plan, tmp_path):
         place_plan(plan, out)
 
 
+def test_a_plan_of_other_factors_is_another(plan, tmp_path):
+    place_plan(plan, tmp_path / 'out')
+    plan.with_suffix('.json').write_text('{"factors": [{"letter": "A", "high": 2}]}')
+    with pytest.raises(PlanError, match='another plan'):
+        place_plan(plan, tmp_path / 'out')
+
+
 def test_a_missing_plan_is_named(tmp_path):
     with pytest.raises(FileNotFoundError, match=r'none\.csv'):
         place_plan(tmp_path / 'none.csv', tmp_path / 'out')

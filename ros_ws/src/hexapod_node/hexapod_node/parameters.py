@@ -25,7 +25,7 @@ from rcl_interfaces.msg import Parameter as ParameterMessage
 from rclpy.node import Node
 from rclpy.parameter import Parameter as RclpyParameter
 
-Value = bool | int | float | str
+Value = bool | int | float | str | list[str]
 Config = TypeVar('Config')
 # Nodes that take whole numbers for real ones.
 _widening: WeakSet[Node] = WeakSet()
