@@ -197,7 +197,7 @@ def leading_sets(campaign: Path) -> list[str]:
     from hexapod_doe.records.options import Options
     from hexapod_doe.tables.bag_table import plan_rule, read_bags
 
-    tables = read_bags([campaign], read_plan(campaign / PLAN_FILE).factors)
+    tables = read_bags([campaign])
     found = analyse(tables[:1], Options(confirmation=plan_rule([campaign])))
     if found.confirmation is None:
         raise ValueError(

@@ -140,7 +140,7 @@ def read_rows(plan: Path, changes: Changes | None = None) -> tuple[Row, ...]:
 def rows_of(plan: Plan, directory: Path, changes: Changes | None = None) -> tuple[Row, ...]:
     """Return the rows of a plan in its run order; their bags are to lie in a campaign's folder."""
     treatments = (changes or Changes()).applied(plan.treatments)
-    factors = {} if plan.treatments.default else {FACTORS: treatments.factors_text}
+    factors = {} if treatments.only_sensors else {FACTORS: treatments.factors_text}
     return tuple(
         Row(
             run_id=row['run_id'],

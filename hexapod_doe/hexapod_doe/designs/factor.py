@@ -136,7 +136,12 @@ class Treatments:
     @cached_property
     def default(self) -> bool:
         """Whether it is sensors alone, on top of article.yaml."""
-        return self.factors == default_factors(self.letters) and self.base == RunSpec.load()
+        return self.only_sensors and self.base == RunSpec.load()
+
+    @cached_property
+    def only_sensors(self) -> bool:
+        """Whether its factors are those of a plan that is told nothing else."""
+        return self.factors == default_factors(self.letters)
 
     def observations(self, levels: Sequence[float]) -> str:
         """Return the letters of the channels that the runs of a case observe.
