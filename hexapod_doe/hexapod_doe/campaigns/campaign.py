@@ -78,6 +78,11 @@ class Campaign:
         return self.rows[0].treatments.base
 
     @property
+    def legend(self) -> tuple[str, ...]:
+        """What the letters of the factors stand for; empty for sensors."""
+        return self.rows[0].treatments.legend
+
+    @property
     def due(self) -> list[Row]:
         """Rows that are not done."""
         return [row for row in self.rows if row.run_id not in self.done]

@@ -37,12 +37,14 @@ class Dashboard:
         self._finished: list[Run] = []
         self._last_log = time.monotonic()
         length = campaign.base.training.episodes
-        runs = [Run(r.run_id, r.observations, planned=length) for r in campaign.rows]
+        runs = [Run(r.run_id, r.label, planned=length) for r in campaign.rows]
         for run in runs:
             if run.run_id in campaign.done:
                 run.state = State.DONE
                 run.returns = [math.nan] * length  # counted, but not seen
-        self.progress = Progress(campaign.directory.name, {run.run_id: run for run in runs})
+        self.progress = Progress(
+            campaign.directory.name, {run.run_id: run for run in runs}, campaign.legend
+        )
         self._console = console or Console(highlight=False)
         self._live = Live(
             get_renderable=self._screen, console=self._console, refresh_per_second=1.0
@@ -60,11 +62,11 @@ class Dashboard:
         """Expected time to the end, NaN while nothing is known."""
         return self.progress.seconds_left
 
-    def begin(self, worker: str, run_id: str, observations: str) -> None:
+    def begin(self, worker: str, run_id: str) -> None:
         """Show a run with its worker."""
         run = self._current[worker] = self.progress.runs[run_id]
         self._began[worker] = time.monotonic()
-        run.state, run.worker, run.observations = State.RUNNING, worker, observations
+        run.state, run.worker = State.RUNNING, worker
         run.returns, run.seconds, run.earlier, run.reason = [], 0.0, 0, ''
 
     def episode(self, worker: str, run_id: str, episode: int, episode_return: float) -> None:

@@ -73,7 +73,7 @@ class FleetCampaign:
             BagError: its bag cannot be written.
         """
         while (row := self._next(among)) is not None:
-            self._dashboard.begin(_place(row), row.run_id, row.observations)
+            self._dashboard.begin(_place(row), row.run_id)
             self._page.refresh()
             try:
                 return FleetRow(row, self._device, self)
@@ -125,7 +125,7 @@ class FleetCampaign:
     def end(self, row: Row, error: Exception | None) -> None:
         """Judge a row as the manager does: it is done if its bag is whole."""
         campaign = self._campaign
-        text = f'{row.run_id}  sensors {row.observations or "none"}'
+        text = f'{row.run_id}  {row.text}'
         done = campaign.complete(row, str(error or ''))
         if not done:
             reason = campaign.reasons[row.run_id][-1]

@@ -41,9 +41,11 @@ def read_progress(directory: Path, known: Mapping[str, Run] | None = None) -> Pr
         hexapod_doe.designs.plan_file.PlanError: its file is not a plan.
     """
     had = {run.run_id: run for run in (known or {}).values() if run.state is State.DONE}
-    runs = [had.get(row.run_id) or read_row(row) for row in read_rows(directory / PLAN_FILE)]
+    rows = read_rows(directory / PLAN_FILE)
+    runs = [had.get(row.run_id) or read_row(row) for row in rows]
     _add_failures(runs, read_failures(directory))
-    return Progress(directory.resolve().name, {run.run_id: run for run in runs})
+    legend = rows[0].treatments.legend
+    return Progress(directory.resolve().name, {run.run_id: run for run in runs}, legend)
 
 
 def _add_failures(runs: Sequence[Run], reasons: Mapping[str, Sequence[str]]) -> None:
@@ -55,7 +57,7 @@ def _add_failures(runs: Sequence[Run], reasons: Mapping[str, Sequence[str]]) -> 
 
 def read_row(row: Row) -> Run:
     """Read how far a row is from its bag, whole, unfinished or not there."""
-    run = Run(row.run_id, row.observations)
+    run = Run(row.run_id, row.label)
     partial = partial_path(row.bag)
     bag = row.bag_state()
     if bag.other:

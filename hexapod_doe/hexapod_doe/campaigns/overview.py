@@ -30,7 +30,8 @@ _STYLES = {
 
 def overview(progress: Progress, runs: Iterable[Run]) -> RenderableType:
     """Return everything: the figures, the workers, and a line for each of some runs."""
-    tables = (figures(progress), '', _workers(progress), '', _runs(progress, runs))
+    legend = [Text(line) for line in progress.legend]
+    tables = (figures(progress), '', _workers(progress), '', *legend, _runs(progress, runs))
     return Group(*tables, _failures(progress))
 
 
@@ -76,13 +77,20 @@ def _runs(progress: Progress, runs: Iterable[Run]) -> RenderableType:
     low, high = limits(curves.values())
     curve_title = f'returns, {low:.0f} to {high:.0f}'
     table = Table(
-        'run', 'sensors', 'state', 'episodes', curve_title, 'reward', box=None, pad_edge=False
+        'run',
+        progress.heading,
+        'state',
+        'episodes',
+        curve_title,
+        'reward',
+        box=None,
+        pad_edge=False,
     )
     for run in runs:
         reward = '' if math.isnan(run.reward) else f'{run.reward:.1f}'
         table.add_row(
             run.run_id,
-            run.observations or 'none',
+            run.label,
             Text(run.phase, style=_STYLES[run.state]),
             f'{len(run.returns)}/{run.planned}' if run.planned else '',
             sparkline(curves[run.run_id], low, high),

@@ -37,7 +37,8 @@ class Run:
     """One row of the plan."""
 
     run_id: str
-    observations: str
+    label: str
+    """Short name of its case."""
     state: State = State.DUE
     worker: str = ''
     """Namespace of who runs it, or ran it."""
@@ -86,6 +87,13 @@ class Progress:
 
     name: str
     runs: dict[str, Run]
+    legend: tuple[str, ...] = ()
+    """What the letters of the cases stand for; empty for sensors."""
+
+    @property
+    def heading(self) -> str:
+        """What the names of the cases list."""
+        return 'high factors' if self.legend else 'sensors'
 
     def having(self, *states: State) -> list[Run]:
         """Return the runs in any of these states."""

@@ -57,6 +57,16 @@ class Row:
         return self.treatments.spec(self.levels)
 
     @property
+    def label(self) -> str:
+        """The short name of its case: sensors, or factors at the high level."""
+        return self.treatments.label(self.levels)
+
+    @property
+    def text(self) -> str:
+        """Its case in words."""
+        return self.treatments.text(self.levels)
+
+    @property
     def varied(self) -> frozenset[str]:
         """What differs between the runs of the plan, by its names among their settings."""
         return frozenset(spec_key(factor.key) for factor in self.treatments.factors if factor.key)

@@ -143,6 +143,26 @@ class Treatments:
         """Whether its factors are those of a plan that is told nothing else."""
         return self.factors == default_factors(self.letters)
 
+    def label(self, levels: Sequence[float]) -> str:
+        """Return the short name of a case: its sensors, or its factors at the high level."""
+        pairs = zip(self.letters, levels, strict=True)
+        letters = ''.join(letter for letter, level in pairs if level > 0)
+        return (self.observations(levels) if self.only_sensors else letters) or 'none'
+
+    def text(self, levels: Sequence[float]) -> str:
+        """Return a case in words, such as 'sensors CD' or 'yaw share 1, body height off'."""
+        if self.only_sensors:
+            return f'sensors {self.label(levels)}'
+        pairs = zip(self.factors, levels, strict=True)
+        return ', '.join(factor.text(level) for factor, level in pairs)
+
+    @property
+    def legend(self) -> tuple[str, ...]:
+        """What the letters stand for, a line for each; empty for sensors alone."""
+        if self.only_sensors:
+            return ()
+        return tuple(f'{factor.letter}  {factor.change}' for factor in self.factors)
+
     def observations(self, levels: Sequence[float]) -> str:
         """Return the letters of the channels that the runs of a case observe.
 

@@ -217,14 +217,14 @@ class ManagerNode(Node):
             self._judge(worker, row, ended)
 
     def _on_begin(self, worker: WorkerClient, row: Row) -> None:
-        self._dashboard.begin(worker.name, row.run_id, row.observations)
+        self._dashboard.begin(worker.name, row.run_id)
         self._publish_status()
 
     def _judge(self, worker: WorkerClient, row: Row, ended: Ended) -> None:
         """Count a row as done if its bag is whole, whatever the worker says."""
         reason = ended.message or f'bag {row.bag} is not complete'
         if self._campaign.complete(row, reason):
-            text = f'{row.run_id}  sensors {row.observations or "none"}  reward {ended.reward:.1f}'
+            text = f'{row.run_id}  {row.text}  reward {ended.reward:.1f}'
             self._dashboard.end(worker.name, text, done=True)
             return
         self._dashboard.end(worker.name, f'{row.run_id} failed: {reason}', done=False)

@@ -21,6 +21,8 @@ class Words:
     """The set with every factor at its high level."""
     none: str
     """The set with every factor at its low level."""
+    empty: str
+    """The same, beside names of sets."""
     low: str
     """Heading of what is at the low level."""
     high: str
@@ -43,6 +45,7 @@ SENSORS = Words(
     sets='sets of sensors',
     whole='all sensors',
     none='no optional sensor',
+    empty='none of them',
     low='without',
     high='with',
     at_low='without a sensor',
@@ -61,6 +64,7 @@ FACTORS = Words(
     sets='combinations of levels',
     whole='all factors high',
     none='all factors low',
+    empty='all factors low',
     low='low',
     high='high',
     at_low='at the low level of a factor',

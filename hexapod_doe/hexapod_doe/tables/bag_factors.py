@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from hexapod_sim.sensor_table import LETTERS
 
-from hexapod_doe.bags.run_identity import CONFIG, settings
+from hexapod_doe.bags.run_identity import plan_differences, settings, spec_key, spec_values
 from hexapod_doe.bags.run_record import RunRecord
 from hexapod_doe.designs.factor import FACTORS, Factor, default_factors, factors_in
 from hexapod_doe.errors import BagError, TableError
@@ -42,7 +42,7 @@ def factors_of(group: Group, chosen: Sequence[str] | None) -> tuple[Factor, ...]
 
 def shared_settings(run: RunRecord) -> dict[str, str]:
     """Return what a run has in common with those of its plan: all but its factors."""
-    varied = {f'{CONFIG}.{factor.key}' for factor in factors_in(run.metadata) or ()}
+    varied = {spec_key(factor.key) for factor in factors_in(run.metadata) or ()}
     return {key: value for key, value in settings(run.metadata).items() if key not in varied}
 
 
@@ -58,20 +58,11 @@ def set_of(run: RunRecord) -> str:
     found, letters = settings(run.metadata), ''
     for factor in factors:
         high = known(run, factor.letter) == '1'
-        expected = _setting_text(factor.value(1 if high else -1))
-        value = found.get(f'{CONFIG}.{factor.key}', expected)
-        if value != expected:
-            raise BagError(
-                f'run {run.run_id}: {factor.key} is {value}, expected {expected} by the level of '
-                f'factor {factor.name!r}'
-            )
+        expected = spec_values({factor.key: factor.value(1 if high else -1)})
+        if odd := plan_differences(found, expected):
+            raise BagError(f'run {run.run_id}: {odd} by the level of factor {factor.name!r}')
         letters += factor.letter if high else ''
     return letters
-
-
-def _setting_text(value: object) -> str:
-    """Return a value as the settings of a run have it."""
-    return str(list(value) if isinstance(value, tuple) else value)
 
 
 def known(run: RunRecord, key: str) -> str:

@@ -24,7 +24,7 @@ class Shown:
 
     def run(self, run_id: str) -> None:
         """Play a whole run on the worker w1."""
-        self.dashboard.begin('/w1', run_id, 'B')
+        self.dashboard.begin('/w1', run_id)
         for episode in range(5):
             self.dashboard.episode('/w1', run_id, episode, 10.0 * episode)
 
@@ -80,7 +80,7 @@ def test_a_worker_that_is_lost_before_its_run_begins_is_one_line(shown):
 
 
 def test_a_resumed_run_begins_where_it_was(shown):
-    shown.dashboard.begin('/w1', 'r3', 'B')
+    shown.dashboard.begin('/w1', 'r3')
     shown.dashboard.episode('/w1', 'r3', 3, 1.0)
     run = shown.dashboard.progress.runs['r3']
     assert (len(run.returns), run.earlier) == (4, 3)
@@ -90,7 +90,7 @@ def test_the_screen_shows_workers_curves_and_failures(folder):
     shown = Shown(folder, terminal=True)
     shown.run('r3')
     row = shown.campaign.rows[0]
-    shown.dashboard.begin('/w2', row.run_id, 'AB')
+    shown.dashboard.begin('/w2', row.run_id)
     shown.campaign.fail(row, 'the disk is full')
     shown.dashboard.end('/w2', 'failed', done=False)
     shown.dashboard.close()

@@ -34,7 +34,7 @@ def test_a_run_says_what_its_bag_says(mixed):
     # The results of these tests earn 10 per episode number, and 5 on average.
     assert run.returns == [0.0, 10.0, 20.0, 30.0, 40.0]
     assert run.reward == 20.0
-    assert (run.worker, run.planned, run.observations) == ('/w1', 5, 'AB')
+    assert (run.worker, run.planned, run.label) == ('/w1', 5, 'AB')
 
 
 def test_the_rate_is_from_the_beginning_to_the_last_episode(mixed):

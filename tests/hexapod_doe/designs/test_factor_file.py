@@ -3,13 +3,18 @@
 
 """A factor is any key of a run's specification; a file that cannot be run gives its one line."""
 
+import io
 import json
 from pathlib import Path
 
 import pytest
 from hexapod_agent.specification.run_spec import RunSpec
+from hexapod_doe.campaigns.folder import read_progress
+from hexapod_doe.campaigns.overview import overview
+from hexapod_doe.campaigns.page import render
 from hexapod_doe.campaigns.row import read_rows
 from hexapod_doe.designs.plan_file import read_plan
+from rich.console import Console
 
 from hexapod_doe import plan
 
@@ -184,3 +189,17 @@ def test_the_example_plans_eight_factors_in_sixteen_rows(tmp_path, capsys):
     rows = read_rows(out)
     assert len({row.spec.to_text() for row in rows}) == len(rows) == 16
     assert {row.spec.sensors['imu_data'].noise for row in rows} == {0.0, 0.05}
+
+
+def test_progress_names_factors_and_levels(tmp_path):
+    out = written(tmp_path, GOOD)
+    progress = read_progress(out.parent)
+    page = render(progress)
+    assert 'yaw share 0 → 1' in page
+    assert 'sensors' not in page
+    console = Console(file=io.StringIO(), width=120)
+    console.print(overview(progress, progress.runs.values()))
+    assert 'C  body orientation off → on' in console.file.getvalue()
+    assert {run.label for run in progress.runs.values()} >= {'none', 'CEAB'}
+    text = next(row.text for row in read_rows(out) if row.label == 'CE')
+    assert text == 'body orientation on, body height on, yaw share 0, learning rate 0.0001'

@@ -71,8 +71,12 @@ def test_a_level_that_its_run_did_not_have_is_no_silent_number(campaign, write_b
     shutil.rmtree(row.bag)
     described = dict(row.metadata) | {'spec': other.to_text()}
     write_bag(f'mixed/runs/{row.run_id}', samples=0, **described)
-    with pytest.raises((BagError, TableError), match=r'task\.yaw_share'):
-        read_bags(sorted((campaign / 'runs').iterdir()))
+    (table,) = read_bags([campaign])  # its plan says which it is to be
+    assert len(table.rows) == 31
+    assert any('task.yaw_share 0.5, expected' in caveat for caveat in table.caveats)
+    (campaign / 'plan.csv').unlink()
+    with pytest.raises(BagError, match=r'task\.yaw_share 0\.5, expected .* factor .yaw share'):
+        read_bags([campaign])
 
 
 def test_runs_of_another_base_are_not_mixed_in(campaign, write_bag) -> None:

@@ -172,7 +172,7 @@ def _row_name(standing: Standing, wide: bool, named: Words) -> str:
     if not wide:
         return f'{standing.rank}'
     whole = standing.size == len(standing.levels)
-    name = named.whole if whole else standing.label if standing.size else 'none of them'
+    name = named.whole if whole else standing.label if standing.size else named.empty
     return f'{name}  {standing.rank}'
 
 
