@@ -227,11 +227,12 @@ class Hostile:
 
     def settle(self, longest_s: float = 30.0) -> None:
         """Wait for answers until none come any more."""
-        end, before = time.monotonic() + longest_s, -1
-        while self._pending and self.answered != before and time.monotonic() < end:
+        end, silent = time.monotonic() + longest_s, 0
+        while self._pending and silent < 3 and time.monotonic() < end:
             before = self.answered
             self.spin(2.0)
             self.collect()
+            silent = silent + 1 if self.answered == before else 0
 
     def unanswered(self) -> Counter[str]:
         """Return how many requests wait for an answer, by service."""
@@ -247,7 +248,9 @@ class Hostile:
 
     def _client(self, name: str, kind: type) -> Client:
         if name not in self._clients:
-            self._clients[name] = self.node.create_client(kind, name)
+            # By default a client keeps ten answers, and this one reads slower than nodes answer.
+            keep = QoSProfile(depth=1000)
+            self._clients[name] = self.node.create_client(kind, name, qos_profile=keep)
             self._clients[name].wait_for_service(2.0)
         return self._clients[name]
 
