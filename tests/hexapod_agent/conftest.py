@@ -3,7 +3,10 @@
 
 """Small runs that several test modules train."""
 
+from pathlib import Path
+
 import pytest
+from hexapod_agent.algorithms import ALGORITHMS, Algorithm
 from hexapod_agent.learning.training import Trainer
 from hexapod_agent.specification.run_spec import RunSpec
 
@@ -40,3 +43,12 @@ def make_trainer(small_config):
         return Trainer(config.observing(observations), seed)
 
     return make
+
+
+@pytest.fixture
+def search(small_config, monkeypatch) -> RunSpec:
+    """A specification of the algorithm in algorithms/random_search.py."""
+    monkeypatch.syspath_prepend(Path(__file__).parent / 'algorithms')
+    names = (f'random_search:{name}' for name in ('RandomSearchConfig', 'RandomSearch'))
+    monkeypatch.setitem(ALGORITHMS, 'random_search', Algorithm(*names))
+    return small_config.with_value('learner.algorithm', 'random_search', 'a test')

@@ -7,7 +7,8 @@ import dataclasses
 from typing import get_type_hints
 
 import pytest
-from hexapod_agent.specification.run_spec import CpgConfig, RunSpec
+from hexapod_agent.specification.run_spec import RunSpec
+from hexapod_agent.specification.sections import CpgConfig
 from hexapod_cpg.mapping import ActionRanges
 from hexapod_cpg.oscillator import HopfConfig
 from hexapod_sim.article import section

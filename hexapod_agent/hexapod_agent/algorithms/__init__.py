@@ -6,7 +6,7 @@
 from dataclasses import dataclass
 from pkgutil import resolve_name
 
-from hexapod_agent.algorithms.learner import Learner, LearnerStack
+from hexapod_agent.algorithms.learner import Learner, LearnerConfig, LearnerStack
 
 
 @dataclass(frozen=True)
@@ -14,12 +14,20 @@ class Algorithm:
     """Where an algorithm's classes are, as 'module:name': only what is used is imported.
 
     Attributes:
+        config_path: Its `LearnerConfig`.
         learner_path: Its `Learner`.
         stack_path: Its `LearnerStack`; '' if it has none and trains on the CPU only.
     """
 
+    config_path: str
     learner_path: str
     stack_path: str = ''
+
+    @property
+    def config(self) -> type[LearnerConfig]:
+        """Its section of a specification."""
+        found: type[LearnerConfig] = resolve_name(self.config_path)
+        return found
 
     @property
     def learner(self) -> type[Learner]:
@@ -35,6 +43,7 @@ class Algorithm:
 
 ALGORITHMS = {
     'ddpg': Algorithm(
+        'hexapod_agent.algorithms.ddpg.config:DdpgConfig',
         'hexapod_agent.algorithms.ddpg.learner:DdpgLearner',
         'hexapod_agent.algorithms.ddpg.stack:DdpgStack',
     ),

@@ -52,6 +52,26 @@ class Problem:
     precision: str
 
 
+@dataclass(frozen=True)
+class LearnerConfig:
+    """An algorithm's section of a specification: a frozen dataclass of sections below this one.
+
+    Values stand in article.yaml. A section that article.yaml lacks has its values as defaults.
+
+    Attributes:
+        algorithm: Name of a row of `ALGORITHMS`.
+    """
+
+    algorithm: str
+
+    def check(self) -> None:
+        """Refuse values that are allowed, but not with one another.
+
+        Raises:
+            ValueError: They are such; the text names their keys.
+        """
+
+
 class Learner(Protocol):
     """An agent that acts, remembers what that earned, and learns from it.
 

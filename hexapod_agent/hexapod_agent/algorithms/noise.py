@@ -4,11 +4,31 @@
 """Ornstein-Uhlenbeck exploration noise in the form that MATLAB's DDPG agent uses."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hexapod_agent.algorithms.hyperparameters import NoiseConfig
+from hexapod_agent.algorithms.ranges import Factor, Share, Value
+
+
+@dataclass(frozen=True)
+class NoiseConfig:
+    """Ornstein-Uhlenbeck noise; MATLAB's names in brackets.
+
+    Attributes:
+        attraction: Pull towards the mean [MeanAttractionConstant], 1/s.
+        sigma: Standard deviation of the drive [StandardDeviation], 1/sqrt(s).
+        mean: Value that the noise is pulled to [Mean].
+        decay: Share of sigma lost per step [StandardDeviationDecayRate].
+        sigma_min: Least sigma [StandardDeviationMin].
+    """
+
+    attraction: Factor
+    sigma: Factor
+    mean: Value
+    decay: Share
+    sigma_min: Factor
 
 
 class OrnsteinUhlenbeckNoise:

@@ -12,7 +12,8 @@ from hexapod_sim.task import LineTask, Outcome
 
 from hexapod_agent.environment.env import Observation, read_observation
 from hexapod_agent.specification.observation import ObservationSpec
-from hexapod_agent.specification.run_spec import CpgConfig, RunSpec
+from hexapod_agent.specification.run_spec import RunSpec
+from hexapod_agent.specification.sections import CpgConfig
 
 
 class Robots:

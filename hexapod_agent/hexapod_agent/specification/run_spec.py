@@ -8,13 +8,11 @@ YAML is the text form; a dotted key such as 'learner.actor.learning_rate' names 
 """
 
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, TypeVar
 
 import yaml
-from hexapod_cpg.mapping import ActionRanges
-from hexapod_cpg.oscillator import HopfConfig
 from hexapod_sim.article import ARTICLE, article
 from hexapod_sim.command_line import CommandLine, file
 from hexapod_sim.quality import Quality
@@ -23,9 +21,11 @@ from hexapod_sim.sensor_table import LETTERS, SENSORS
 from hexapod_sim.task import TaskConfig
 from pydantic import TypeAdapter, ValidationError
 
-from hexapod_agent.algorithms.hyperparameters import LearnerConfig, TrainingConfig
+from hexapod_agent.algorithms import ALGORITHMS
+from hexapod_agent.algorithms.learner import LearnerConfig
 from hexapod_agent.specification.nested import flat, merged, nest
 from hexapod_agent.specification.observation import ObservationSpec, parse_observations
+from hexapod_agent.specification.sections import CpgConfig, TrainingConfig
 from hexapod_agent.specification.spec_text import (
     ConfigError,
     changes_of,
@@ -33,21 +33,6 @@ from hexapod_agent.specification.spec_text import (
     quoted,
     read_changes,
 )
-
-
-@dataclass(frozen=True)
-class CpgConfig:
-    """The pattern generator and what an action asks of it.
-
-    Attributes:
-        hopf: Constants of the oscillators.
-        reading: Which command fields the five actions of a leg set.
-        ranges: What action zero and action one stand for.
-    """
-
-    hopf: HopfConfig
-    reading: Literal['D1', 'D2']
-    ranges: ActionRanges
 
 
 @dataclass(frozen=True)
@@ -94,7 +79,11 @@ class RunSpec:
     def differences(self, other: 'RunSpec') -> dict[str, tuple[Any, Any]]:
         """Return the values of both, this one's first, by the dotted keys in which they differ."""
         mine, its = flat(self.to_mapping()), flat(other.to_mapping())
-        return {key: (mine[key], its[key]) for key in mine if mine[key] != its[key]}
+        return {
+            key: (mine.get(key), its.get(key))
+            for key in mine | its
+            if mine.get(key) != its.get(key)
+        }
 
     @classmethod
     def from_mapping(cls, changes: Mapping[str, Any], source: str) -> 'RunSpec':
@@ -189,6 +178,8 @@ class RunSpec:
         return self.changed({'observations': parse_observations(letters)}, 'observations')
 
 
+T = TypeVar('T')
+
 # Sections of the layout before there was one for the learner, of bags and checkpoints.
 _OF_THE_LEARNER = ('actor', 'critic', 'ddpg', 'noise')
 
@@ -213,21 +204,57 @@ def _build(base: Mapping[str, Any], changes: Any, source: str) -> RunSpec:
     if isinstance(changes.get('observations'), str):
         chosen = parse_observations(changes['observations'])
         changes['observations'] = {letter: letter in chosen for letter in LETTERS}
+    base = _with_algorithm(base, changes, source)
     _check_keys(base, changes, source, '')
+    values = merged(base, changes)
+    learner = _validated(
+        ALGORITHMS[values['learner']['algorithm']].config, values['learner'], source, 'learner.'
+    )
+    spec = _validated(RunSpec, values | {'learner': learner}, source)
     try:
-        spec: RunSpec = TypeAdapter(RunSpec).validate_python(merged(base, changes))
-    except ValidationError as error:
-        first = error.errors()[0]
-        key = '.'.join(str(part) for part in first['loc'])
-        raise ConfigError(
-            f'{source}: {key} is {quoted(first["input"])}, expected: {first["msg"]}'
-        ) from error
-    try:
-        _ = spec.learner.ddpg.group_size
+        spec.learner.check()
         check_qualities(spec.sensors)
     except ValueError as error:
         raise ConfigError(f'{source}: {error}') from error
     return spec
+
+
+def _validated(kind: type[T], values: Any, source: str, prefix: str = '') -> T:
+    """Make a section of its values."""
+    try:
+        return TypeAdapter(kind).validate_python(values)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = prefix + '.'.join(str(part) for part in first['loc'])
+        raise ConfigError(
+            f'{source}: {key} is {quoted(first["input"])}, expected: {first["msg"]}'
+        ) from error
+
+
+def _with_algorithm(
+    base: Mapping[str, Any], changes: Mapping[str, Any], source: str
+) -> Mapping[str, Any]:
+    """Return a base with the learner's sections of the algorithm that changes choose.
+
+    Sections that both algorithms have stay as they are.
+    """
+    learner, held = changes.get('learner'), base['learner']
+    chosen = held['algorithm']
+    if isinstance(learner, Mapping):
+        chosen = learner.get('algorithm', chosen)
+    if chosen == held['algorithm']:
+        return base
+    if not isinstance(chosen, str) or chosen not in ALGORITHMS:
+        known = ', '.join(ALGORITHMS)
+        raise ConfigError(
+            f'{source}: learner.algorithm is {quoted(chosen)}, expected one of {known}'
+        )
+    held = article()['learner'] | held
+    sections = {}
+    for each in fields(ALGORITHMS[chosen].config):
+        default: Any = each.default
+        sections[each.name] = held[each.name] if each.name in held else asdict(default)
+    return {**base, 'learner': sections | {'algorithm': chosen}}
 
 
 def _modern(changes: Mapping[str, Any]) -> dict[str, Any]:

@@ -246,7 +246,7 @@ def check_levels(factor: Factor, base: RunSpec) -> Factor:
         if isinstance(level, bool) != isinstance(found, bool) and found is not None:
             kind = 'true or false' if isinstance(found, bool) else f'a value such as {found!r}'
             raise ConfigError(f'{source}: {factor.key} is {level!r}, expected {kind}')
-        levels.append(_validated(factor.key, level, source))
+        levels.append(_validated(base, factor.key, level, source))
     low, high = levels
     if low == high:
         raise ConfigError(
@@ -272,14 +272,16 @@ def key_value(base: RunSpec, key: str, where: str) -> Any:
     return found
 
 
-def _validated(key: str, level: Any, source: str) -> Any:
+def _validated(base: RunSpec, key: str, level: Any, source: str) -> Any:
     """Return a level as a specification has it, whether or not it goes with the other values."""
     kind: Any = RunSpec
+    found: Any = base
     for part in key.split('.'):
-        if is_dataclass(kind):
-            kind = get_type_hints(kind, include_extras=True)[part]
+        if is_dataclass(found):  # whose own class may be a special one of what the hint says
+            kind = get_type_hints(type(found), include_extras=True)[part]
+            found = getattr(found, part)
         else:  # a mapping, of channels
-            kind = get_args(kind)[1]
+            kind, found = get_args(kind)[1], found[part]
     try:
         return TypeAdapter(kind).validate_python(level)
     except ValidationError as error:

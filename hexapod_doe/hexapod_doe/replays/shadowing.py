@@ -17,7 +17,7 @@ import numpy as np
 from hexapod_agent.algorithms.policies import Policy
 from hexapod_agent.nodes.messages import decode
 from hexapod_agent.specification.observation import ObservationSpec
-from hexapod_agent.specification.run_spec import CpgConfig
+from hexapod_agent.specification.sections import CpgConfig
 from hexapod_cpg.mapping import (
     ACTION_SIZE,
     COMMAND_FIELDS,

@@ -5,8 +5,7 @@
 
 import numpy as np
 import pytest
-from hexapod_agent.algorithms.hyperparameters import NoiseConfig
-from hexapod_agent.algorithms.noise import OrnsteinUhlenbeckNoise
+from hexapod_agent.algorithms.noise import NoiseConfig, OrnsteinUhlenbeckNoise
 
 
 def make(size: int = 1, sample_time: float = 0.025, **changes: float) -> OrnsteinUhlenbeckNoise:

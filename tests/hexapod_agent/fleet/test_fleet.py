@@ -99,6 +99,15 @@ def test_runs_of_other_specifications_equal_those_trained_alone(
     assert len({run.summaries[0].episode_return for run in fleet}) == len(fleet)
 
 
+def test_another_algorithm_learns_in_a_fleet_what_it_learns_alone(
+    search, new_run, train_alone, train_fleet
+):
+    fleet, alone = ([new_run(search, 'B', seed) for seed in (1, 2)] for _ in range(2))
+    train_fleet(fleet, places=2)
+    for ours, theirs in zip(fleet, alone, strict=True):
+        assert_same_results(ours, train_alone(theirs))
+
+
 @pytest.mark.parametrize('name', ['small_config', 'switched_config'])
 def test_a_stack_learns_what_its_runs_learn_alone(
     name, request, new_run, train_alone, train_fleet

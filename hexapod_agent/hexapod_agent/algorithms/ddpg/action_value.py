@@ -6,10 +6,10 @@
 import torch
 from torch import Tensor
 
+from hexapod_agent.algorithms.ddpg.config import CriticConfig
 from hexapod_agent.algorithms.ddpg.networks import Critic
 from hexapod_agent.algorithms.ddpg.optimizer import ClippedAdam
 from hexapod_agent.algorithms.ddpg.parameters import ParameterStack
-from hexapod_agent.algorithms.hyperparameters import CriticConfig
 from hexapod_agent.algorithms.replay import Batch
 
 

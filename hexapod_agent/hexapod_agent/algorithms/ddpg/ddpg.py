@@ -13,10 +13,10 @@ import torch
 from torch import Tensor
 
 from hexapod_agent.algorithms.ddpg.action_value import ActionValue
+from hexapod_agent.algorithms.ddpg.config import ActorConfig, CriticConfig
 from hexapod_agent.algorithms.ddpg.networks import Actor, initial_bounds
 from hexapod_agent.algorithms.ddpg.optimizer import ClippedAdam
 from hexapod_agent.algorithms.ddpg.parameters import ParameterStack
-from hexapod_agent.algorithms.hyperparameters import ActorConfig, CriticConfig
 from hexapod_agent.algorithms.replay import Batch
 
 METRICS = ('critic_loss', 'actor_loss', 'mean_q')

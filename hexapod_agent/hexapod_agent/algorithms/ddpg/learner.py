@@ -12,12 +12,12 @@ import torch
 from hexapod_sim.task import Outcome
 from numpy.typing import NDArray
 
+from hexapod_agent.algorithms.ddpg.config import DdpgConfig
 from hexapod_agent.algorithms.ddpg.ddpg import METRICS, Ddpg
 from hexapod_agent.algorithms.ddpg.networks import Actor
 from hexapod_agent.algorithms.ddpg.parameters import ParameterStack
 from hexapod_agent.algorithms.ddpg.running_scale import RunningScale
-from hexapod_agent.algorithms.hyperparameters import LearnerConfig
-from hexapod_agent.algorithms.learner import Learner, Metrics, Problem
+from hexapod_agent.algorithms.learner import Learner, LearnerConfig, Metrics, Problem
 from hexapod_agent.algorithms.noise import OrnsteinUhlenbeckNoise
 from hexapod_agent.algorithms.policies import MlpPolicy
 from hexapod_agent.algorithms.replay import Batch, ReplayBuffer
@@ -35,7 +35,7 @@ class DdpgLearner(Learner):
 
     metric_names = METRICS
 
-    def __init__(self, config: LearnerConfig, problem: Problem, seed: int) -> None:
+    def __init__(self, config: DdpgConfig, problem: Problem, seed: int) -> None:
         ddpg = config.ddpg
         if ddpg.update_every > problem.episode_steps:
             raise ValueError(
@@ -156,7 +156,7 @@ class DdpgLearner(Learner):
 
 
 def policy_of(
-    parameters: ParameterStack, config: LearnerConfig, scale: RunningScale | None
+    parameters: ParameterStack, config: DdpgConfig, scale: RunningScale | None
 ) -> MlpPolicy:
     """Make a policy on the memory of the actor of a stack of one."""
     arrays = {name: array[0].numpy() for name, array in parameters.arrays.items()}
@@ -172,6 +172,7 @@ def policy_of_before(
     config: LearnerConfig, observation_size: int, action_size: int, state: Mapping[str, Any]
 ) -> MlpPolicy:
     """Make a policy of the state that files held before they held a policy."""
+    assert isinstance(config, DdpgConfig)  # there was no other algorithm
     shapes = Actor.shapes(observation_size, action_size, config.actor.hidden)
     parameters = ParameterStack(shapes)
     parameters.flat.copy_(state['actor'])

@@ -15,9 +15,9 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
+from hexapod_agent.algorithms.ddpg.config import DdpgConfig
 from hexapod_agent.algorithms.ddpg.ddpg import METRICS, Ddpg
 from hexapod_agent.algorithms.ddpg.learner import DdpgLearner, hidden_dtype
-from hexapod_agent.algorithms.hyperparameters import LearnerConfig
 from hexapod_agent.algorithms.learner import Job, LearnerStack, Metrics, Problem
 from hexapod_agent.algorithms.replay import Batch
 
@@ -25,7 +25,7 @@ from hexapod_agent.algorithms.replay import Batch
 class DdpgStack(LearnerStack[DdpgLearner]):
     """See `LearnerStack`; narrower observations than the widest are filled with zeros."""
 
-    def __init__(self, config: LearnerConfig, problem: Problem, slots: int, device: str) -> None:
+    def __init__(self, config: DdpgConfig, problem: Problem, slots: int, device: str) -> None:
         ddpg = config.ddpg
         self.update_interval, self._updates = ddpg.update_every, ddpg.group_size
         self._device = torch.device(device)

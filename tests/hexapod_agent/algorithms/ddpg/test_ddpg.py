@@ -6,10 +6,10 @@
 import numpy as np
 import pytest
 import torch
+from hexapod_agent.algorithms.ddpg.config import ActorConfig, CriticConfig
 from hexapod_agent.algorithms.ddpg.ddpg import Ddpg
 from hexapod_agent.algorithms.ddpg.networks import Actor, Critic
 from hexapod_agent.algorithms.ddpg.parameters import ParameterStack
-from hexapod_agent.algorithms.hyperparameters import ActorConfig, CriticConfig
 from hexapod_agent.algorithms.replay import Batch
 
 SIZES = (5, 3)

@@ -1,27 +1,23 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Hyper-parameters of the learner, by section of article.yaml, which holds and explains them.
-
-No torch here: the environment reads the same file as the learner.
-"""
+"""DDPG's section of a specification; article.yaml holds and explains every value."""
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Annotated, Literal
+from typing import Literal
 
-from annotated_types import Interval, MinLen
-
-# What the values may be: far wider than anything sensible, but with these nothing divides by zero,
-# waits for ever or is not a number.
-_Count = Annotated[int, Interval(ge=1, le=10_000_000)]
-_Episodes = Annotated[int, Interval(ge=0, le=1_000_000)]
-_Rows = Annotated[int, Interval(ge=1, le=1_000_000_000)]
-_Layers = Annotated[tuple[Annotated[int, Interval(ge=1, le=100_000)], ...], MinLen(1)]
-_Factor = Annotated[float, Interval(ge=0.0, le=1e6)]
-_PositiveFactor = Annotated[float, Interval(gt=0.0, le=1e6)]
-_Share = Annotated[float, Interval(ge=0.0, le=1.0)]
-_Value = Annotated[float, Interval(ge=-1e9, le=1e9)]
+from hexapod_agent.algorithms.learner import LearnerConfig
+from hexapod_agent.algorithms.noise import NoiseConfig
+from hexapod_agent.algorithms.ranges import (
+    Count,
+    Factor,
+    Layers,
+    PositiveFactor,
+    Rows,
+    Share,
+    Value,
+)
 
 
 @dataclass(frozen=True)
@@ -38,11 +34,11 @@ class ActorConfig:
         layer_norm: Whether each hidden layer is normalised before its ReLU.
     """
 
-    hidden: _Layers
-    learning_rate: _Factor
-    l2: _Factor
-    gradient_threshold: _PositiveFactor
-    preactivation_penalty: _Factor
+    hidden: Layers
+    learning_rate: Factor
+    l2: Factor
+    gradient_threshold: PositiveFactor
+    preactivation_penalty: Factor
     normalize_loss: bool
     layer_norm: bool
 
@@ -62,18 +58,18 @@ class CriticConfig:
         twin: Whether there are two, the lesser of whose target values is learned from.
     """
 
-    hidden: _Layers
+    hidden: Layers
     merge: Literal['add', 'append']
-    initial_value: _Value
-    learning_rate: _Factor
-    l2: _Factor
-    gradient_threshold: _PositiveFactor
+    initial_value: Value
+    learning_rate: Factor
+    l2: Factor
+    gradient_threshold: PositiveFactor
     layer_norm: bool
     twin: bool
 
 
 @dataclass(frozen=True)
-class DdpgConfig:
+class UpdateConfig:
     """The update.
 
     Attributes:
@@ -90,14 +86,14 @@ class DdpgConfig:
             their standard deviation, of all that the run has observed so far.
     """
 
-    batch_size: _Count
-    buffer_size: _Rows
-    discount: _Share
-    n_step: _Count
-    target_smoothing: _Share
-    update_every: _Count
-    update_ratio: _PositiveFactor
-    reward_scale: _PositiveFactor
+    batch_size: Count
+    buffer_size: Rows
+    discount: Share
+    n_step: Count
+    target_smoothing: Share
+    update_every: Count
+    update_ratio: PositiveFactor
+    reward_scale: PositiveFactor
     normalize_observations: bool
 
     @property
@@ -120,64 +116,21 @@ class DdpgConfig:
 
 
 @dataclass(frozen=True)
-class NoiseConfig:
-    """Ornstein-Uhlenbeck noise; MATLAB's names in brackets.
+class DdpgConfig(LearnerConfig):
+    """The article's learner.
 
     Attributes:
-        attraction: Pull towards the mean [MeanAttractionConstant], 1/s.
-        sigma: Standard deviation of the drive [StandardDeviation], 1/sqrt(s).
-        mean: Value that the noise is pulled to [Mean].
-        decay: Share of sigma lost per step [StandardDeviationDecayRate].
-        sigma_min: Least sigma [StandardDeviationMin].
-    """
-
-    attraction: _Factor
-    sigma: _Factor
-    mean: _Value
-    decay: _Share
-    sigma_min: _Factor
-
-
-@dataclass(frozen=True)
-class LearnerConfig:
-    """What learns, and how.
-
-    Attributes:
-        algorithm: Whose sections count.
         actor: The policy's network and its training.
         critic: The action value's network and its training.
         ddpg: The update.
         noise: Exploration.
     """
 
-    algorithm: Literal['ddpg']
     actor: ActorConfig
     critic: CriticConfig
-    ddpg: DdpgConfig
+    ddpg: UpdateConfig
     noise: NoiseConfig
 
-
-@dataclass(frozen=True)
-class TrainingConfig:
-    """The run around the updates.
-
-    Attributes:
-        episodes: Episodes of a run.
-        window: Last returns that the final average reward is the mean of.
-        evaluation: Episodes without noise or learning after the last one of the training, from
-            starts that are the same for every run; 0 for none.
-        checkpoint_every: Episodes between two checkpoints.
-        final_rate: Share of both learning rates that is left at the last of `episodes`, towards
-            which they fall by the same amount after each; it lasts in episodes after that.
-        precision: Arithmetic of an update. 'float32' is torch's default. 'float32_fast' takes
-            the machine's fastest product of float32 matrices, which may round the factors
-            where the machine has units for that. 'bfloat16' computes hidden layers so; the
-            parameters, output layers, losses and optimisers stay float32, and so does acting.
-    """
-
-    episodes: _Count
-    window: _Count
-    evaluation: _Episodes
-    checkpoint_every: _Count
-    final_rate: _Factor
-    precision: Literal['float32', 'float32_fast', 'bfloat16']
+    def check(self) -> None:
+        """Refuse a group of updates that is no whole number."""
+        _ = self.ddpg.group_size
