@@ -185,6 +185,7 @@ def _trainer(options: argparse.Namespace) -> Trainer:
     if options.resume:
         trainer = checkpoint.load(file)
         _check_same_run(options, trainer)
+        trainer.config = _with_length(trainer.config, options.episodes)
         return trainer
     if file.exists():
         raise ConfigError(f'{str(file)!r} exists, expected --resume or another --out')
@@ -193,10 +194,13 @@ def _trainer(options: argparse.Namespace) -> Trainer:
 
 def _spec(options: argparse.Namespace) -> RunSpec:
     """Return what the options ask for."""
-    spec = RunSpec.load(options.config, options.set)
-    if options.episodes is not None:
-        spec = spec.with_value('training.episodes', options.episodes, '--episodes')
+    spec = _with_length(RunSpec.load(options.config, options.set), options.episodes)
     return spec if options.observations is None else spec.observing(options.observations)
+
+
+def _with_length(spec: RunSpec, episodes: int | None) -> RunSpec:
+    """Return a specification of a run of so many episodes; None changes nothing."""
+    return spec if episodes is None else spec.with_value('training.episodes', episodes, 'episodes')
 
 
 def _check_same_run(options: argparse.Namespace, trainer: Trainer) -> None:
@@ -212,6 +216,8 @@ def _check_same_run(options: argparse.Namespace, trainer: Trainer) -> None:
         asked = (asked or trainer.config).observing(trainer.config.letters)
     if options.observations is not None:
         asked = asked.observing(options.observations)
+    if options.episodes is not None:  # a run may become longer
+        asked = _with_length(asked, trainer.config.training.episodes)
     differences = different(trainer, asked, options.seed)
     if differences:
         raise ConfigError(
