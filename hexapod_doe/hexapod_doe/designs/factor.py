@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, is_dataclass
+from dataclasses import dataclass, field, is_dataclass, replace
 from functools import cached_property
 from typing import Any, get_args, get_type_hints
 
@@ -247,12 +247,10 @@ def check_levels(factor: Factor, base: RunSpec) -> Factor:
             kind = 'true or false' if isinstance(found, bool) else f'a value such as {found!r}'
             raise ConfigError(f'{source}: {factor.key} is {level!r}, expected {kind}')
         levels.append(_validated(base, factor.key, level, source))
-    low, high = levels
-    if low == high:
-        raise ConfigError(
-            f'{where}: low and high level of {factor.key} are both {low!r}, expected two values'
-        )
-    return Factor(factor.letter, factor.name, factor.key, low, high, factor.device)
+    if levels[0] == levels[1]:
+        both = f'low and high level of {factor.key} are both {levels[0]!r}'
+        raise ConfigError(f'{where}: {both}, expected two values')
+    return replace(factor, low=levels[0], high=levels[1])
 
 
 def key_value(base: RunSpec, key: str, where: str) -> Any:
@@ -274,19 +272,19 @@ def key_value(base: RunSpec, key: str, where: str) -> Any:
 
 def _validated(base: RunSpec, key: str, level: Any, source: str) -> Any:
     """Return a level as a specification has it, whether or not it goes with the other values."""
-    kind: Any = RunSpec
+    kind: Any
     found: Any = base
     for part in key.split('.'):
-        if is_dataclass(found):  # whose own class may be a special one of what the hint says
-            kind = get_type_hints(type(found), include_extras=True)[part]
-            found = getattr(found, part)
+        if is_dataclass(found):
+            hints = get_type_hints(type(found), include_extras=True)
+            kind, found = hints[part], getattr(found, part)
         else:  # a mapping, of channels
             kind, found = get_args(kind)[1], found[part]
     try:
         return TypeAdapter(kind).validate_python(level)
     except ValidationError as error:
-        message = error.errors()[0]['msg']
-        raise ConfigError(f'{source}: {key} is {level!r}, expected: {message}') from error
+        expected = error.errors()[0]['msg']
+        raise ConfigError(f'{source}: {key} is {level!r}, expected: {expected}') from error
 
 
 def _allowed(found: Any, path: str) -> str:
