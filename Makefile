@@ -45,7 +45,8 @@ demo: setup  ## run a small real campaign through the graph, to a report
 	@$(ENTER); [ -f $(DEMO)/plan.csv ] || ros2 run hexapod_doe plan --design eighth --replicates 1 --seed 1 \
 		--out $(DEMO)/plan.csv
 	@$(ENTER); ros2 launch hexapod_bringup campaign.launch.xml plan:=$(DEMO)/plan.csv \
-		episodes:=$(DEMO_EPISODES) record_every:=$(DEMO_EPISODES) local_workers:=2
+		episodes:=$(DEMO_EPISODES) record_every:=$(DEMO_EPISODES) local_workers:=2 \
+		"set:=['training.evaluation=$(DEMO_EPISODES)']"
 	@$(ENTER); python -m hexapod_doe.campaign_status --quiet $(DEMO) || { \
 		echo '$(DEMO) is not finished; `make demo` goes on, `campaign_status $(DEMO)` tells how far it is'; exit 1; }
 	@$(ENTER); ros2 run hexapod_doe analyze $(DEMO) --out $(DEMO)/report

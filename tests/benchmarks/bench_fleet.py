@@ -50,7 +50,11 @@ STEPS, EPISODES, ROUNDS = 144, 2, 3
 ROWS = {'cpu': (1, 4, 32)}
 ROWS_ON_DEVICE = (1, 32, 320)
 PROCESSES_ON_DEVICE = 8  # for the most rows, once more
-CHANGES = {'task': {'time_limit_steps': STEPS}, 'ddpg': {'buffer_size': 10_000}}
+CHANGES = {
+    'task': {'time_limit_steps': STEPS},
+    'ddpg': {'buffer_size': 10_000},
+    'training': {'evaluation': 0},
+}
 RUN_STEPS = 1000 * 600  # of a run of the article's length
 CAMPAIGN_RUNS = 320
 

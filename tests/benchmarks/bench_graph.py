@@ -31,7 +31,7 @@ EPISODES = 4
 ANSWER_S = 15.0  # an episode takes one or two
 OBSERVATIONS = 'ABCDE'
 # The buffer never holds a batch, so nothing is learned.
-NO_LEARNER = 'ddpg: {batch_size: 100000}\n'
+NO_LEARNER = 'ddpg: {batch_size: 100000}\ntraining: {evaluation: 0}\n'
 TARGETS = {'environment': 4000, 'composed worker': 2000, 'four processes': 700}
 """Periods per second that two idle cores are to reach."""
 

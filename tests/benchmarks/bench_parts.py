@@ -134,7 +134,9 @@ def main() -> None:
     rclpy.init()
     with tempfile.TemporaryDirectory() as directory:
         config = Path(directory) / 'no_learner.yaml'
-        config.write_text('ddpg: {batch_size: 100000}\n')  # the buffer never holds a batch
+        config.write_text(
+            'ddpg: {batch_size: 100000}\ntraining: {evaluation: 0}\n'
+        )  # the buffer never holds a batch
         measure(config)
     rclpy.try_shutdown()
     whole = spent.total()

@@ -75,7 +75,7 @@ def main() -> None:
         if clock.calls >= WARM_UP:
             marks.append((clock.calls, time.process_time(), clock.seconds))
 
-    spec = f'{{observations: {OBSERVATIONS}, training: {{episodes: {EPISODES}}}}}'
+    spec = f'{{observations: {OBSERVATIONS}, training: {{episodes: {EPISODES}, evaluation: 0}}}}'
     goal = TrainRun.Goal(run_id='bench', spec=spec, seed=1)
     handle = result(action.send_goal_async(goal, mark))
     response = result(handle.get_result_async())

@@ -16,7 +16,6 @@ import numpy as np
 import pytest
 from hexapod_agent.learning.training import Trainer
 from hexapod_agent.nodes.agent_node import AgentNode
-from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_sim.nodes.sim_node import SimNode
@@ -40,8 +39,8 @@ def planned_actions() -> np.ndarray:
 class ScriptedTrainer(Trainer):
     """Plays the planned actions and keeps what it is shown."""
 
-    def __init__(self, config: RunSpec, seed: int) -> None:
-        super().__init__(config.with_settings(['training.evaluation=0']), seed)
+    def __init__(self, *args) -> None:
+        super().__init__(*args)
         self.actions = planned_actions()
         self.observations: list[np.ndarray] = []
         self.rewards: list[float] = []
@@ -111,7 +110,7 @@ def play_on_graph(graph) -> Tape:
     publishers = graph.nodes[0].count_publishers
     graph.add(AgentNode(make_trainer))
     graph.until(lambda: publishers('joint_trajectory') == 1)
-    spec = f'{{observations: {LETTERS}, training: {{episodes: 1}}}}'
+    spec = f'{{observations: {LETTERS}, training: {{episodes: 1, evaluation: 0}}}}'
     goal = TrainRun.Goal(run_id='one_path', spec=spec, seed=SEED)
     response = graph.train(goal)
     assert response.result.message == ''

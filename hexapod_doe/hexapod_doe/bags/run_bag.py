@@ -5,6 +5,8 @@
 
 from collections.abc import Mapping
 
+from hexapod_doe.errors import BagError
+
 RUN_RECORD = 'hexapod_run'
 """Name of the MCAP metadata records that tell which run it is; what is written last holds."""
 EPISODE_RESULT = 'hexapod_interfaces/msg/EpisodeResult'
@@ -24,13 +26,21 @@ DIGEST = 'digest'
 """Metadata key of the fingerprint of all messages, see `digest`."""
 EVALUATION, EVALUATION_RETURN = 'evaluation', 'evaluation_return'
 """Metadata keys: how many episodes of an evaluation a run has, and their mean return."""
+_MOST_DIGITS = 7
 RESUMED = 'resumed'
 """Metadata key of the number of episodes that came from an earlier recording that was cut."""
 
 
 def evaluation_of(metadata: Mapping[str, str]) -> int:
-    """Return how many episodes a run's evaluation has; bags of before had none."""
-    return int(metadata.get(EVALUATION, '0'))
+    """Return how many episodes a run's evaluation has; bags of before had none.
+
+    Raises:
+        BagError: what is stated is no such number.
+    """
+    stated = metadata.get(EVALUATION, '0')
+    if not (stated.isdecimal() and len(stated) <= _MOST_DIGITS):
+        raise BagError(f'metadata key {EVALUATION} is {stated[:20]!r}, expected a number')
+    return int(stated)
 
 
 def is_evaluation(topic: str) -> bool:

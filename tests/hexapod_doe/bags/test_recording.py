@@ -18,6 +18,13 @@ def recording(tmp_path):
     return Recording('r1', tmp_path / 'r1', {'seed': '7', 'status': 'mine'}, PERIOD_NS)
 
 
+@pytest.mark.parametrize('stated', ['', 'two', '-1', '2.5', '9' * 5000])
+def test_an_evaluation_of_no_known_length_is_refused(tmp_path, stated):
+    with pytest.raises(BagError, match=r'metadata key evaluation is .*, expected a number'):
+        Recording('r1', tmp_path / 'b', {'evaluation': stated}, PERIOD_NS)
+    assert not list(tmp_path.iterdir())
+
+
 def test_messages_are_logged_at_their_own_stamp(recording, samples):
     recording.begin_sample(0, [samples.joints])
     for stamp in (PERIOD_NS, 2 * PERIOD_NS):
