@@ -208,12 +208,13 @@ def leading_sets(campaign: Path) -> list[str]:
 
 def _treatments(args: argparse.Namespace) -> Treatments:
     """Return the factors of the command line: of a file, or sensors by number or letters."""
-    base = RunSpec.load(args.config, args.set)
-    if Path(args.factors).suffix in _FACTOR_FILES or Path(args.factors).is_file():
-        return read_factors(Path(args.factors).expanduser(), base)
-    number = args.factors.isdigit()
-    letters = factor_letters(int(args.factors)) if number else args.factors
-    return Treatments(default_factors(letters), base)
+    base, given = RunSpec.load(args.config, args.set), args.factors
+    if given.isdigit():
+        return Treatments(default_factors(factor_letters(int(given))), base)
+    path = Path(given).expanduser()
+    if not given.isupper() and (path.suffix in _FACTOR_FILES or path.is_file()):
+        return read_factors(path, base)
+    return Treatments(default_factors(given), base)
 
 
 def _design(args: argparse.Namespace, factors: str) -> Design:

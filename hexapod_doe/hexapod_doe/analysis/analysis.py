@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from hexapod_doe.analysis.describe import design_caveats, model_caveats, summarise
+from hexapod_doe.analysis.describe import design_caveats, model_caveats, scoring_caveats, summarise
 from hexapod_doe.bags.run_identity import differences
 from hexapod_doe.choosing.attribution import alias_safe
 from hexapod_doe.choosing.choice import Failures, model_failures
@@ -171,7 +171,12 @@ def _modelled(table: RunTable, state: Pipeline, options: Options) -> Analysis:
         design=design,
         table=table.rows.assign(kept=state.kept),
         curves=table.curves,
-        caveats=(*table.caveats, *design_caveats(design), *state.caveats),
+        caveats=(
+            *table.caveats,
+            *design_caveats(design),
+            *scoring_caveats(design, table.response),
+            *state.caveats,
+        ),
         main_effects=main_effects(table, state.steps[0].fit),
         steps=tuple(step_record(step, aliases) for step in state.steps),
         elimination=removals(state.dropped, aliases),

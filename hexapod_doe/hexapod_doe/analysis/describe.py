@@ -18,6 +18,8 @@ from hexapod_doe.tables.table import BLOCK, RunTable
 _MISSING_SHARE = 0.25
 """With more of a fraction missing than this the design was never meant to be that fraction."""
 
+_SCORING = 'task.'
+"""What the key of a factor begins with that changes reward, start or limits."""
 _NAMED = 5
 """Sets that a sentence names before it counts the rest."""
 
@@ -68,6 +70,18 @@ def design_caveats(design: DesignSummary) -> list[str]:
     if low != high:
         caveats.append(f'Cases have between {low} and {high} runs: the fit weighs each run alike.')
     return caveats
+
+
+def scoring_caveats(design: DesignSummary, response: str) -> list[str]:
+    """Return what a reader must know where a factor changes how runs are scored."""
+    scoring = [factor.name for factor in design.named if factor.key.startswith(_SCORING)]
+    if not scoring or response.endswith('falls'):
+        return []
+    return [
+        f'{", ".join(scoring)}: part of the task, which the reward is computed by. Effects on '
+        f'{response.replace("_", " ")} hold how runs are scored, not only how they walk; '
+        '--response evaluation_falls does not depend on the weights.'
+    ]
 
 
 def model_caveats(analysis: Analysis) -> list[str]:

@@ -203,3 +203,15 @@ def test_progress_names_factors_and_levels(tmp_path):
     assert {run.label for run in progress.runs.values()} >= {'none', 'CEAB'}
     text = next(row.text for row in read_rows(out) if row.label == 'CE')
     assert text == 'body orientation on, body height on, yaw share 0, learning rate 0.0001'
+
+
+def test_a_file_named_like_a_number_or_letters_is_no_factor_file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name in ('7', 'ABC'):
+        (tmp_path / name).write_text('no factors')
+    for factors, count in (
+        (['--design', 'quarter'], 7),
+        (['--factors', 'ABC', '--design=full'], 3),
+    ):
+        plan.main([*factors, '--out', f'{count}.csv'])
+        assert len(read_plan(tmp_path / f'{count}.csv').factors) == count
