@@ -22,6 +22,7 @@ from hexapod_sim.units import OTHER_UNITS
 
 OUR_ORDER, REVERSED, SHUFFLED = 'ours', 'reversed', 'shuffled'
 STOPPED, STALE_STAMPS = 'stopped', 'stale_stamps'
+_ACCELERATION = 'linear_acceleration'
 _JOINT_FIELDS = ('position', 'velocity', 'effort')
 DEVICES = {channel.device_topic: channel for channel in SENSORS.values()}
 """Channels that a driver can take the place of, by the topic of their device."""
@@ -87,12 +88,14 @@ def faults(channel: Channel) -> dict[str, Callable[[Any], None]]:
         found['wrong_frame'] = lambda message: setattr(message.header, 'frame_id', 'wrong_frame')
     if observed.kind == 'quaternion':
         found['bad_quaternion'] = _changed(observed.path, lambda values: 1.2 * values)
-    if 'linear_acceleration' in (field.path for field in channel.fields):
-        found['flipped_gravity'] = _changed('linear_acceleration', lambda values: -values)
-    # An orientation has no unit: what comes along with it does.
-    measured = next((field for field in channel.fields if field.unit != '1'), None)
-    if measured is not None and measured.unit in OTHER_UNITS:
-        factor = max(factor for _, factor in OTHER_UNITS[measured.unit])
+    if _ACCELERATION in (field.path for field in channel.fields):
+        found['flipped_gravity'] = _changed(_ACCELERATION, lambda values: -values)
+    # A wrong unit shows where it makes what is observed large, or gravity small.
+    known = [field for field in channel.fields if field.unit in OTHER_UNITS and field.unit != '1']
+    measured = next((each for each in known if each.scale or each.path == _ACCELERATION), None)
+    if measured is not None:
+        factors = [factor for _, factor in OTHER_UNITS[measured.unit]]
+        factor = max(factors) if measured.scale else min(factors)
         found['wrong_unit'] = _changed(measured.path, lambda values: factor * values)
     return found
 
