@@ -111,6 +111,9 @@ def _confirm(args: argparse.Namespace) -> None:
     write_plan(further, out)
     assert further.settings is not None  # made here, not read
     print(f'{len(further.rows)} runs: {", ".join(further.settings.confirms)} -> {out}')
+    if not further.treatments.only_sensors:
+        for levels in further.levels:
+            print(f'{further.treatments.label(levels)}  {further.treatments.text(levels)}')
     print(further.settings.confirmation.rule)
     print('\n'.join(['Next:', *(f'  {line}' for line in after_confirm(folder, out))]))
 
@@ -209,10 +212,11 @@ def leading_sets(campaign: Path) -> list[str]:
 def _treatments(args: argparse.Namespace) -> Treatments:
     """Return the factors of the command line: of a file, or sensors by number or letters."""
     base, given = RunSpec.load(args.config, args.set), args.factors
-    if given.isdigit():
+    if given.isdecimal():
         return Treatments(default_factors(factor_letters(int(given))), base)
     path = Path(given).expanduser()
-    if not given.isupper() and (path.suffix in _FACTOR_FILES or path.is_file()):
+    letters = given.isalpha() and given.isupper()
+    if not letters and (path.suffix in _FACTOR_FILES or path.is_file()):
         return read_factors(path, base)
     return Treatments(default_factors(given), base)
 

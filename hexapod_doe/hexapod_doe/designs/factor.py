@@ -11,7 +11,8 @@ from functools import cached_property
 from typing import Any, get_args, get_type_hints
 
 import yaml
-from hexapod_agent.specification.run_spec import ConfigError, RunSpec
+from hexapod_agent.specification.run_spec import RunSpec
+from hexapod_agent.specification.spec_text import ConfigError, quoted
 from hexapod_sim.sensor_table import CHANNELS
 from pydantic import TypeAdapter, ValidationError
 
@@ -245,10 +246,10 @@ def check_levels(factor: Factor, base: RunSpec) -> Factor:
         source = f'{where}: {name} level'
         if isinstance(level, bool) != isinstance(found, bool) and found is not None:
             kind = 'true or false' if isinstance(found, bool) else f'a value such as {found!r}'
-            raise ConfigError(f'{source}: {factor.key} is {level!r}, expected {kind}')
+            raise ConfigError(f'{source}: {factor.key} is {quoted(level)}, expected {kind}')
         levels.append(_validated(base, factor.key, level, source))
     if levels[0] == levels[1]:
-        both = f'low and high level of {factor.key} are both {levels[0]!r}'
+        both = f'low and high level of {factor.key} are both {quoted(levels[0])}'
         raise ConfigError(f'{where}: {both}, expected two values')
     return replace(factor, low=levels[0], high=levels[1])
 
@@ -263,7 +264,7 @@ def key_value(base: RunSpec, key: str, where: str) -> Any:
     path = ''
     for part in key.split('.'):
         if not isinstance(found, Mapping) or part not in found:
-            raise ConfigError(f'{where}: unknown key {key!r}, {_allowed(found, path)}')
+            raise ConfigError(f'{where}: unknown key {quoted(key)}, {_allowed(found, path)}')
         found, path = found[part], f'{path}{part}.'
     if isinstance(found, Mapping):
         raise ConfigError(f'{where}: key {key!r} is a section, {_allowed(found, path)}')
@@ -284,7 +285,7 @@ def _validated(base: RunSpec, key: str, level: Any, source: str) -> Any:
         return TypeAdapter(kind).validate_python(level)
     except ValidationError as error:
         expected = error.errors()[0]['msg']
-        raise ConfigError(f'{source}: {key} is {level!r}, expected: {expected}') from error
+        raise ConfigError(f'{source}: {key} is {quoted(level)}, expected: {expected}') from error
 
 
 def _allowed(found: Any, path: str) -> str:

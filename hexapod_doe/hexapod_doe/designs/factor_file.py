@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import yaml
-from hexapod_agent.specification.run_spec import ConfigError, RunSpec
+from hexapod_agent.specification.run_spec import RunSpec
+from hexapod_agent.specification.spec_text import ConfigError, parsed, quoted
 
 from hexapod_doe.designs.design import MAX_FACTORS, MIN_FACTORS
 from hexapod_doe.designs.factor import OBSERVATIONS, Factor, Treatments, check_levels
@@ -35,9 +35,9 @@ def read_factors(path: Path, base: RunSpec) -> Treatments:
         OSError: It cannot be read.
     """
     try:
-        entries = yaml.safe_load(path.read_text(encoding='utf-8'))
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise ConfigError(f'{path}: not YAML: {error}') from error
+        entries = parsed(path.read_text(encoding='utf-8'), str(path))
+    except UnicodeDecodeError as error:
+        raise ConfigError(f'{path}: not YAML: not UTF-8 text') from error
     try:
         return Treatments(factors_of(entries, base), base)
     except ConfigError as error:
@@ -78,28 +78,28 @@ def factors_of(entries: Any, base: RunSpec) -> tuple[Factor, ...]:
 def _check_entry(entry: Any, number: int) -> None:
     """Refuse an entry without the keys that a factor has, or with texts that are none."""
     if not isinstance(entry, dict):
-        raise ConfigError(f'factor {number} is {entry!r}, expected {", ".join(_NEEDED)}')
+        raise ConfigError(f'factor {number} is {quoted(entry)}, expected {", ".join(_NEEDED)}')
     name = entry.get('name')
-    where = f'factor {name!r}' if 'name' in entry else f'factor {number}'
+    where = f'factor {quoted(name)}' if 'name' in entry else f'factor {number}'
     for key in _NEEDED:
         if key not in entry:
             raise ConfigError(f'{where}: no {key}, expected {", ".join(_NEEDED)}')
     for key in entry:
         if key not in (*_NEEDED, *_OPTIONAL):
             raise ConfigError(
-                f'{where}: unknown entry {key!r}, expected {", ".join((*_NEEDED, *_OPTIONAL))}'
+                f'{where}: unknown entry {quoted(key)}, expected {", ".join((*_NEEDED, *_OPTIONAL))}'
             )
     for key in ('name', 'key', 'device', 'letter'):
         text = entry.get(key)
         if key in entry and not (isinstance(text, str) and text.strip() and text.isprintable()):
-            raise ConfigError(f'{where}: {key} is {text!r}, expected a text of one line')
+            raise ConfigError(f'{where}: {key} is {quoted(text)}, expected a text of one line')
     if len(entry['name']) > _LONGEST:
         raise ConfigError(
             f'{where}: name of {len(entry["name"])} letters, expected {_LONGEST} at most'
         )
     letter = entry.get('letter', 'A')
     if letter not in tuple(LETTERS):
-        raise ConfigError(f'{where}: letter {letter!r}, expected one of {LETTERS}')
+        raise ConfigError(f'{where}: letter {quoted(letter)}, expected one of {LETTERS}')
 
 
 def _letters(entries: Sequence[dict[str, Any]]) -> list[str]:

@@ -31,6 +31,7 @@ MARKERS = ('o', '^', 's', 'D')
 """Their markers."""
 
 RC: dict[Any, Any] = {
+    'text.parse_math': False,  # names of factors are taken as they are
     'axes.axisbelow': True,
     'axes.edgecolor': MUTED,
     'axes.facecolor': 'none',
