@@ -87,7 +87,8 @@ def _check_entry(entry: Any, number: int) -> None:
     for key in entry:
         if key not in (*_NEEDED, *_OPTIONAL):
             raise ConfigError(
-                f'{where}: unknown entry {quoted(key)}, expected {", ".join((*_NEEDED, *_OPTIONAL))}'
+                f'{where}: unknown entry {quoted(key)}, expected '
+                f'{", ".join((*_NEEDED, *_OPTIONAL))}'
             )
     for key in ('name', 'key', 'device', 'letter'):
         text = entry.get(key)
