@@ -12,10 +12,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from tensorboardX.event_file_writer import EventsWriter
-from tensorboardX.proto.event_pb2 import Event, SessionLog
-from tensorboardX.summary import scalar
-
+from hexapod_agent.compat import Event, EventsWriter, SessionLog, scalar
 from hexapod_agent.learning.summary import EpisodeSummary
 
 

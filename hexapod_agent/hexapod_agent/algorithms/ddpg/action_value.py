@@ -26,7 +26,7 @@ class ActionValue:
 
     def __init__(
         self, observation_size: int, action_size: int, config: CriticConfig, batch_size: int,
-        agents: int, dtype: torch.dtype, hidden_dtype: torch.dtype | None,
+        agents: int, dtype: torch.dtype, compute_dtype: torch.dtype | None,
         device: torch.device | str,
     ) -> None:  # fmt: skip
         shapes = Critic.shapes(observation_size, action_size, config.hidden, config.merge)
@@ -36,8 +36,8 @@ class ActionValue:
             self.parameters, config.learning_rate, config.l2, config.gradient_threshold
         )
         norm, gradients = config.layer_norm, self.optimizer.gradients
-        self.online = Critic(self.parameters, batch_size, gradients, hidden_dtype, norm)
-        self.target = Critic(self.target_parameters, batch_size, None, hidden_dtype, norm)
+        self.online = Critic(self.parameters, batch_size, gradients, compute_dtype, norm)
+        self.target = Critic(self.target_parameters, batch_size, None, compute_dtype, norm)
 
     def learn(self, batch: Batch, target: Tensor) -> Tensor:
         """Take a step towards target values (..., batch, 1); return the loss before it."""

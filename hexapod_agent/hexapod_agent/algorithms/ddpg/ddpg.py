@@ -43,8 +43,8 @@ class Ddpg:
         target_smoothing: Share of the online network that moves into its target per update.
         generator: Draws the initial weights; None leaves them zero, for agents to be `put` in.
         agents: Independent agents that learn side by side.
-        dtype: Number format of parameters, losses and optimisers.
-        hidden_dtype: Number format of the hidden layers in an update; `dtype` if None.
+        dtype: That of master weights, losses and optimisers.
+        compute_dtype: That of the hidden layers in an update; `dtype` if None.
         device: Where everything is kept and computed.
     """
 
@@ -59,7 +59,7 @@ class Ddpg:
         generator: torch.Generator | None,
         agents: int = 1,
         dtype: torch.dtype = torch.float32,
-        hidden_dtype: torch.dtype | None = None,
+        compute_dtype: torch.dtype | None = None,
         device: torch.device | str = 'cpu',
     ) -> None:
         sizes = (observation_size, action_size)
@@ -72,7 +72,7 @@ class Ddpg:
             Actor.shapes(*sizes, actor.hidden), agents, dtype, device
         )
         self._critics = [
-            ActionValue(*sizes, critic, batch_size, agents, dtype, hidden_dtype, device)
+            ActionValue(*sizes, critic, batch_size, agents, dtype, compute_dtype, device)
             for _ in range(2 if critic.twin else 1)
         ]
         self.critic_parameters = self._critics[0].parameters
@@ -87,13 +87,13 @@ class Ddpg:
             self.actor_parameters, actor.learning_rate, actor.l2, actor.gradient_threshold
         )
 
-        # Acting stays in the full format; the updates' hidden layers may not.
+        # Acting computes with the master weights; the updates' hidden layers may not.
         norm = actor.layer_norm
         self._policy = Actor(self.actor_parameters, 1, layer_norm=norm)
         gradients = self._actor_optimizer.gradients
-        self._actor = Actor(self.actor_parameters, batch_size, gradients, hidden_dtype, norm)
+        self._actor = Actor(self.actor_parameters, batch_size, gradients, compute_dtype, norm)
         self._target_actor = Actor(
-            self._actor_target_parameters, batch_size, None, hidden_dtype, norm
+            self._actor_target_parameters, batch_size, None, compute_dtype, norm
         )
         if generator is not None:
             self._refresh()

@@ -12,23 +12,24 @@ from torch import Tensor
 
 from hexapod_agent.algorithms.ddpg.parameters import ParameterStack
 from hexapod_agent.algorithms.policies import NORM_EPSILON
+from hexapod_agent.compat import layer_norm, layer_norm_backward, relu_backward
 
 
 class Cast:
-    """Conversion to a number format through a buffer; free where there is nothing to convert."""
+    """Conversion to a dtype through a buffer; free where there is nothing to convert."""
 
     def __init__(self, like: Tensor, dtype: torch.dtype) -> None:
         self._buffer = None if like.dtype == dtype else torch.empty_like(like, dtype=dtype)
 
     def __call__(self, tensor: Tensor) -> Tensor:
-        """Return the tensor in the other format, valid until the next call."""
+        """Return the tensor in the other dtype, valid until the next call."""
         return tensor if self._buffer is None else self._buffer.copy_(tensor)
 
 
-class Shortened:
-    """Copy of a network's parameters in a shorter number format, and the gradients of the copy.
+class ComputeCopy:
+    """A network's master weights copied to the compute dtype, with the gradients of the copy.
 
-    Where the format is that of the parameters, the copy is they themselves.
+    Where that is the dtype of the master weights, the copy is they themselves.
 
     Attributes:
         parameters: What layers compute with.
@@ -38,7 +39,7 @@ class Shortened:
     def __init__(
         self, parameters: ParameterStack, gradients: ParameterStack | None, dtype: torch.dtype
     ) -> None:
-        self._full, self._full_gradients = parameters, gradients
+        self._master, self._master_gradients = parameters, gradients
         self._is_copy = dtype != parameters.flat.dtype
         self.parameters, self.gradients = parameters, gradients
         if self._is_copy:
@@ -47,14 +48,14 @@ class Shortened:
             self.refresh()
 
     def refresh(self) -> None:
-        """Take over parameters that have moved."""
+        """Take over master weights that have moved."""
         if self._is_copy:
-            self.parameters.flat.copy_(self._full.flat)
+            self.parameters.flat.copy_(self._master.flat)
 
-    def widen_gradients(self) -> None:
-        """Write the gradients to those of the full parameters."""
-        if self._is_copy and self.gradients is not None and self._full_gradients is not None:
-            self._full_gradients.flat.copy_(self.gradients.flat)
+    def pass_gradients_on(self) -> None:
+        """Write the gradients to those of the master weights."""
+        if self._is_copy and self.gradients is not None and self._master_gradients is not None:
+            self._master_gradients.flat.copy_(self.gradients.flat)
 
 
 class Dense:
@@ -154,9 +155,7 @@ class Activation:
         """Activate x, in place where nothing is normalised."""
         if self._normalize:
             self._x = x
-            x, self._mean, self._reciprocal = torch.native_layer_norm(
-                x, x.shape[-1:], None, None, NORM_EPSILON
-            )
+            x, self._mean, self._reciprocal = layer_norm(x, NORM_EPSILON)
         self.output = torch.relu_(x)
         return self.output
 
@@ -164,18 +163,8 @@ class Activation:
         """Gradient of the last x, given that of the output, which is overwritten."""
         gradient = relu_backward(gradient, self.output)
         if self._normalize:
-            gradient, _, _ = torch.ops.aten.native_layer_norm_backward(
-                gradient, self._x, self._x.shape[-1:], self._mean, self._reciprocal,
-                None, None, (True, False, False),
-            )  # fmt: skip
+            gradient = layer_norm_backward(gradient, self._x, self._mean, self._reciprocal)
         return gradient
-
-
-def relu_backward(gradient: Tensor, activation: Tensor) -> Tensor:
-    """Zero the gradient, in place, where the unit was off."""
-    return torch.ops.aten.threshold_backward.grad_input(
-        gradient, activation, 0.0, grad_input=gradient
-    )
 
 
 def layer_shapes(name: str, inputs: int, outputs: int) -> dict[str, tuple[int, ...]]:

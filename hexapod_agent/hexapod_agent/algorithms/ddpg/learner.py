@@ -54,7 +54,7 @@ class DdpgLearner(Learner):
         self._noise_generator = np.random.default_rng(noise)
         self.networks = Ddpg(
             *sizes, config.actor, config.critic, ddpg.batch_size, ddpg.target_smoothing,
-            _torch_generator(init), hidden_dtype=hidden_dtype(problem.precision),
+            _torch_generator(init), compute_dtype=compute_dtype(problem.precision),
         )  # fmt: skip
         self.scale = RunningScale(sizes[0]) if ddpg.normalize_observations else None
         self._policy = policy_of(self.networks.actor_parameters, config, self.scale)
@@ -183,8 +183,8 @@ def policy_of_before(
     return policy_of(parameters, config, scale)
 
 
-def hidden_dtype(precision: str) -> torch.dtype | None:
-    """Return the number format of an update's hidden layers; None for that of the parameters."""
+def compute_dtype(precision: str) -> torch.dtype | None:
+    """Return the dtype of an update's hidden layers; None for that of the master weights."""
     return torch.bfloat16 if precision == 'bfloat16' else None
 
 

@@ -5,8 +5,8 @@
 
 Written out, the actor step computes only what its formula needs: no gradient of the critic's
 weights and none through the critic's observation branch. Tests hold it against autograd.
-Tensors have the shapes that `layers` tells. Hidden layers may compute in a shorter number format
-(`dtype`); the output layers, what they get and what they give stay in that of the parameters.
+Tensors have the shapes that `layers` tells. Hidden layers may compute in another dtype than that
+of the master weights; output layers, what they get and what they give keep the latter.
 """
 
 import math
@@ -19,8 +19,8 @@ from torch import Tensor
 from hexapod_agent.algorithms.ddpg.layers import (
     Activation,
     Cast,
+    ComputeCopy,
     Dense,
-    Shortened,
     SingleUnit,
     layer_shapes,
 )
@@ -47,7 +47,7 @@ class Actor:
         parameters: Layout of `Actor.shapes`.
         batch: Observations per pass.
         gradients: Filled by `backward`; None for a pass that never goes back.
-        dtype: Number format of the hidden layers; that of the parameters if None.
+        dtype: Compute dtype of the hidden layers; that of the parameters if None.
         layer_norm: Whether each hidden layer is normalised before its ReLU.
     """
 
@@ -69,31 +69,31 @@ class Actor:
         dtype: torch.dtype | None = None,
         layer_norm: bool = False,
     ) -> None:
-        wide = parameters.flat.dtype
-        narrow = dtype or wide
-        self._shortened = short = Shortened(parameters, gradients, narrow)
-        self._hidden = _branch(short, 'hidden', batch)
+        master = parameters.flat.dtype
+        compute = dtype or master
+        self._copy = copy = ComputeCopy(parameters, gradients, compute)
+        self._hidden = _branch(copy, 'hidden', batch)
         self._activations = [Activation(layer_norm) for _ in self._hidden]
         self._output = Dense(parameters, gradients, 'output', batch)
         last = self._hidden[-1].output
-        self._widen = Cast(last, wide)
-        self._narrow = Cast(last.to(wide), narrow)
+        self._to_master = Cast(last, master)
+        self._to_compute = Cast(last.to(master), compute)
         first = self._hidden[0]
-        self._narrow_input = Cast(first.input_like(wide), narrow)
+        self._input_to_compute = Cast(first.input_like(master), compute)
         self.preactivation = self._output.output
         self.action = torch.empty_like(self.preactivation)
         self._slope = torch.empty_like(self.preactivation)
 
     def refresh(self) -> None:
         """Take over parameters that have moved."""
-        self._shortened.refresh()
+        self._copy.refresh()
 
     def forward(self, observation: Tensor) -> Tensor:
         """Actions of a batch, in the buffer `action`; `preactivation` holds them before tanh."""
-        self._x = x = self._narrow_input(observation)
+        self._x = x = self._input_to_compute(observation)
         for layer, activation in zip(self._hidden, self._activations, strict=True):
             x = activation.forward(layer.forward(x))
-        self._features = self._widen(x)
+        self._features = self._to_master(x)
         self._output.forward(self._features)
         return torch.tanh(self.preactivation, out=self.action)
 
@@ -110,10 +110,10 @@ class Actor:
             action_gradient, action_gradient, self._slope, value=-1.0, out=action_gradient
         )
         gradient.add_(self.preactivation, alpha=preactivation_factor)
-        hidden = self._narrow(self._output.backward_input(gradient))
+        hidden = self._to_compute(self._output.backward_input(gradient))
         gradient_in = self._activations[-1].backward(hidden)
         _branch_backward(self._hidden, self._activations[:-1], self._x, gradient_in)
-        self._shortened.widen_gradients()
+        self._copy.pass_gradients_on()
         self._output.backward(self._features, gradient)
 
 
@@ -127,7 +127,7 @@ class Critic:
         parameters: Layout of `Critic.shapes`; tells which merge it is.
         batch: Pairs of observation and action per pass.
         gradients: Filled by `backward`; None for a pass that never goes back.
-        dtype: Number format of the branches; that of the parameters if None.
+        dtype: Compute dtype of the branches; that of the parameters if None.
         layer_norm: Whether each hidden layer is normalised before its ReLU, the merged one too.
     """
 
@@ -151,20 +151,20 @@ class Critic:
         dtype: torch.dtype | None = None,
         layer_norm: bool = False,
     ) -> None:
-        wide = parameters.flat.dtype
-        narrow = dtype or wide
-        self._shortened = short = Shortened(parameters, gradients, narrow)
-        self._observation = _branch(short, 'observation', batch)
+        master = parameters.flat.dtype
+        compute = dtype or master
+        self._copy = copy = ComputeCopy(parameters, gradients, compute)
+        self._observation = _branch(copy, 'observation', batch)
         self._activations = [Activation(layer_norm) for _ in self._observation]
-        self._action = Dense(short.parameters, short.gradients, 'action', batch)
+        self._action = Dense(copy.parameters, copy.gradients, 'action', batch)
         self._output = SingleUnit(parameters, gradients, 'output', batch)
         self.value = self._output.output
-        self._merged = self._output.input_like(narrow)
-        self._widen = Cast(self._merged, wide)
-        self._narrow = Cast(self._merged.to(wide), narrow)
-        self._narrow_observation = Cast(self._observation[0].input_like(wide), narrow)
-        self._narrow_action = Cast(self._action.input_like(wide), narrow)
-        self._widen_gradient = Cast(self._action.input_like(narrow), wide)
+        self._merged = self._output.input_like(compute)
+        self._to_master = Cast(self._merged, master)
+        self._to_compute = Cast(self._merged.to(master), compute)
+        self._observation_to_compute = Cast(self._observation[0].input_like(master), compute)
+        self._action_to_compute = Cast(self._action.input_like(master), compute)
+        self._gradient_to_master = Cast(self._action.input_like(compute), master)
         width = self._action.output.shape[-1]
         self._append = self._merged.shape[-1] == 2 * width
         self._observation_part = slice(0, width)
@@ -172,12 +172,12 @@ class Critic:
 
     def refresh(self) -> None:
         """Take over parameters that have moved."""
-        self._shortened.refresh()
+        self._copy.refresh()
 
     def forward(self, observation: Tensor, action: Tensor) -> Tensor:
         """Values (..., batch, 1) in the buffer `value`."""
-        self._s = x = self._narrow_observation(observation)
-        self._a = self._narrow_action(action)
+        self._s = x = self._observation_to_compute(observation)
+        self._a = self._action_to_compute(action)
         *below, merge = self._activations
         for layer, activation in zip(self._observation, below, strict=False):
             x = activation.forward(layer.forward(x))
@@ -188,7 +188,7 @@ class Critic:
         else:
             last.product(x, last.bias + self._action.bias, self._merged)
             self._action.product(self._a, self._merged, self._merged)
-        self._features = self._widen(merge.forward(self._merged))
+        self._features = self._to_master(merge.forward(self._merged))
         return self._output.forward(self._features)
 
     def backward(self, value_gradient: Tensor) -> None:
@@ -197,25 +197,27 @@ class Critic:
         self._action.backward(self._a, merged[..., self._action_part])
         part = merged[..., self._observation_part]
         _branch_backward(self._observation, self._activations[:-1], self._s, part)
-        self._shortened.widen_gradients()
+        self._copy.pass_gradients_on()
         self._output.backward(self._features, value_gradient)
 
     def action_gradient(self, value_gradient: Tensor) -> Tensor:
         """Gradient with respect to the actions of the last `forward`, in a buffer."""
         merged = self._merged_gradient(value_gradient)
-        return self._widen_gradient(self._action.backward_input(merged[..., self._action_part]))
+        return self._gradient_to_master(
+            self._action.backward_input(merged[..., self._action_part])
+        )
 
     def _merged_gradient(self, value_gradient: Tensor) -> Tensor:
         """Gradient before the ReLU that follows the merge."""
-        gradient = self._narrow(self._output.backward_input(value_gradient))
+        gradient = self._to_compute(self._output.backward_input(value_gradient))
         return self._activations[-1].backward(gradient)
 
 
-def _branch(short: Shortened, prefix: str, batch: int) -> list[Dense]:
+def _branch(copy: ComputeCopy, prefix: str, batch: int) -> list[Dense]:
     """Make the layers '<prefix>0', '<prefix>1', ... that the parameters hold."""
-    weights = (name for name in short.parameters.shapes if 'weight' in name)
+    weights = (name for name in copy.parameters.shapes if 'weight' in name)
     return [
-        Dense(short.parameters, short.gradients, name.removesuffix('.weight'), batch)
+        Dense(copy.parameters, copy.gradients, name.removesuffix('.weight'), batch)
         for name in weights
         if name.startswith(prefix)
     ]

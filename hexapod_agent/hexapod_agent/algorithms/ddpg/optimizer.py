@@ -9,8 +9,7 @@ import torch
 from torch import Tensor
 
 from hexapod_agent.algorithms.ddpg.parameters import ParameterStack
-
-_DECAY_MEAN, _DECAY_SQUARE, _EPSILON = 0.9, 0.999, 1e-8
+from hexapod_agent.compat import fused_adam
 
 
 class ClippedAdam:
@@ -54,6 +53,8 @@ class ClippedAdam:
         """Leave the parameters of all other agents alone from now on."""
         self._agents = list(agents)
         self._moved = self._rows(agents)
+        self._moving = torch.zeros_like(self._steps)
+        self._moving[self._agents] = 1.0
 
     def set_share(self, agent: int, share: float) -> None:
         """Let an agent step by so much of the learning rate from now on."""
@@ -73,22 +74,14 @@ class ClippedAdam:
         self._norms.clamp_(min=self._threshold).reciprocal_().mul_(self._threshold)
         for array, _, scale in self._clipped:
             array.mul_(scale)
-        torch._foreach_add_(self._moved[-1], 1.0)
+        self._steps.add_(self._moving)
         shares = [self._shares[agent] for agent in self._agents]
         if len(set(shares)) == 1:
-            self._adam(self._moved, shares[0])
+            fused_adam(self._moved, shares[0] * self._learning_rate)
             return
         for place, share in enumerate(shares):
-            self._adam([rows[place : place + 1] for rows in self._moved], share)
-
-    def _adam(self, rows: list[list[Tensor]], share: float) -> None:
-        """Move agents by what torch.optim.Adam ends up in, without all that it looks at first."""
-        parameters, gradients, mean, square, steps = rows
-        torch._fused_adam_(
-            parameters, gradients, mean, square, [], steps,
-            lr=share * self._learning_rate, beta1=_DECAY_MEAN, beta2=_DECAY_SQUARE,
-            weight_decay=0.0, eps=_EPSILON, amsgrad=False, maximize=False,
-        )  # fmt: skip
+            rows = [each[place : place + 1] for each in self._moved]
+            fused_adam(rows, share * self._learning_rate)
 
     def put(self, agent: int, single: 'ClippedAdam') -> None:
         """Take over the state of a stack of one as an agent of this stack."""

@@ -17,7 +17,7 @@ from torch import Tensor
 
 from hexapod_agent.algorithms.ddpg.config import DdpgConfig
 from hexapod_agent.algorithms.ddpg.ddpg import METRICS, Ddpg
-from hexapod_agent.algorithms.ddpg.learner import DdpgLearner, hidden_dtype
+from hexapod_agent.algorithms.ddpg.learner import DdpgLearner, compute_dtype
 from hexapod_agent.algorithms.learner import Job, LearnerStack, Metrics, Problem
 from hexapod_agent.algorithms.replay import Batch
 
@@ -32,7 +32,7 @@ class DdpgStack(LearnerStack[DdpgLearner]):
         sizes = problem.observation_size, problem.action_size
         self._networks = Ddpg(
             *sizes, config.actor, config.critic, ddpg.batch_size, ddpg.target_smoothing,
-            None, slots, hidden_dtype=hidden_dtype(problem.precision), device=self._device,
+            None, slots, compute_dtype=compute_dtype(problem.precision), device=self._device,
         )  # fmt: skip
         pinned = self._device.type != 'cpu'
         # A group of updates for the first slot, then one for the second, and so on.
