@@ -27,7 +27,6 @@ from hexapod_agent.algorithms.ddpg.layers import (
 from hexapod_agent.algorithms.ddpg.parameters import ParameterStack
 
 OUTPUT_BOUND = 5e-3  # of the output layers' initial weights
-MERGES = ('add', 'append')
 
 
 def initial_bounds(shapes: Mapping[str, tuple[int, ...]]) -> dict[str, float]:

@@ -1,19 +1,27 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""One update is the textbook's, computed here by autograd; the switches do what they name."""
+"""Updates are those of the reference by autograd; the switches do what they name."""
 
 import numpy as np
 import pytest
 import torch
 from hexapod_agent.algorithms.ddpg.config import ActorConfig, CriticConfig
 from hexapod_agent.algorithms.ddpg.ddpg import Ddpg
-from hexapod_agent.algorithms.ddpg.networks import Actor, Critic
 from hexapod_agent.algorithms.ddpg.parameters import ParameterStack
+from hexapod_agent.algorithms.ddpg.reference import ReferenceDdpg
 from hexapod_agent.algorithms.replay import Batch
 
 SIZES = (5, 3)
 BATCH = 16
+
+
+def critic_config(**changes) -> CriticConfig:
+    values = {
+        'hidden': (20, 10), 'merge': 'add', 'initial_value': 0.0, 'learning_rate': 1e-2, 'l2': 0.0,
+        'gradient_threshold': 1e9, 'layer_norm': False, 'twin': False,
+    }  # fmt: skip
+    return CriticConfig(**values | changes)
 
 
 def make(
@@ -21,9 +29,8 @@ def make(
     seed: int = 0,
     batch: int = BATCH,
     rate: float = 1e-2,
-    value: float = 0.0,
     observations: int = SIZES[0],
-    twin: bool = False,
+    critic: dict | None = None,
     **actor,
 ) -> Ddpg:
     values = {
@@ -34,7 +41,7 @@ def make(
         observations,
         SIZES[1],
         ActorConfig(**values | actor),
-        CriticConfig((20, 10), 'add', value, rate, 0.0, 1e9, False, twin),
+        critic_config(learning_rate=rate, **critic or {}),
         batch,
         target_smoothing=0.1,
         generator=torch.Generator().manual_seed(seed),
@@ -61,83 +68,47 @@ def fill(agent: Ddpg, agents: int = 1, seed: int = 0) -> Batch:
     return batch
 
 
-def forward(network: type, parameters: ParameterStack, *inputs: torch.Tensor) -> torch.Tensor:
-    """Differentiable forward pass, written once more for the reference."""
-    arrays = parameters
-    x = inputs[0]
-    if network is Actor:
-        for layer in ('hidden0', 'hidden1'):
-            x = (x @ arrays[f'{layer}.weight'].T + arrays[f'{layer}.bias']).relu()
-        return x @ arrays['output.weight'].T + arrays['output.bias']
-    x = (x @ arrays['observation0.weight'].T + arrays['observation0.bias']).relu()
-    x = x @ arrays['observation1.weight'].T + arrays['observation1.bias']
-    x = (x + inputs[1] @ arrays['action.weight'].T + arrays['action.bias']).relu()
-    return x @ arrays['output.weight'].T + arrays['output.bias']
-
-
-def leaves(parameters: ParameterStack) -> dict[str, torch.Tensor]:
-    return {name: a[0].clone().requires_grad_() for name, a in parameters.arrays.items()}
-
-
-def adam(arrays: dict[str, torch.Tensor], loss: torch.Tensor) -> None:
-    optimizer = torch.optim.Adam(arrays.values(), lr=1e-2)
-    loss.backward()
-    optimizer.step()
-
-
-@pytest.mark.parametrize(
-    ('penalty', 'normalize', 'twin'), [(0.0, False, False), (0.02, True, False), (0.0, True, True)]
-)
-def test_update_is_that_of_autograd(penalty, normalize, twin):
-    agent = make(preactivation_penalty=penalty, normalize_loss=normalize, twin=twin)
-    batch = fill(agent).inner(0)
-    actor, critic = leaves(agent.actor_parameters), leaves(agent.critic_parameters)
-    # The targets still have the initial weights; take them from the state.
-    state = {name: value.clone() for name, value in stacks_of(agent).items()}
-    critics = [name for name in ('critic', 'twin_critic') if name in state]
-    assert len(critics) == 1 + twin
-    parts = {'actor': agent.actor_parameters} | dict.fromkeys(critics, agent.critic_parameters)
-    targets = {
-        name: {key: array[0] for key, array in with_numbers(like, state[f'target_{name}']).items()}
-        for name, like in parts.items()
+def arrays_of(agent: Ddpg, target: bool) -> dict[str, dict[str, torch.Tensor]]:
+    """Arrays of a stack of one by network, of the targets or of what they follow."""
+    layouts = {'actor': agent.actor_parameters} | dict.fromkeys(
+        ('critic', 'twin_critic'), agent.critic_parameters
+    )
+    return {
+        name: {
+            key: array[0] for key, array in with_numbers(layout, agent.state_dict()[part]).items()
+        }
+        for name, layout in layouts.items()
+        if (part := f'target_{name}' if target else name) in agent.state_dict()
     }
 
-    statistics = agent.update(batch)
 
-    next_action = forward(Actor, targets['actor'], batch.next_observation).tanh()
-    values = [forward(Critic, targets[n], batch.next_observation, next_action) for n in critics]
-    target = batch.reward + batch.bootstrap * torch.stack(values).amin(dim=0)
-    losses = []
-    learned = {'critic': critic}
-    if twin:
-        assert not torch.equal(*values)
-        learned['twin_critic'] = {
-            key: array[0].clone().requires_grad_()
-            for key, array in with_numbers(agent.critic_parameters, state['twin_critic']).items()
-        }
-    for arrays in learned.values():
-        value = forward(Critic, arrays, batch.observation, batch.action)
-        losses.append(torch.nn.functional.mse_loss(value, target))
-        adam(arrays, losses[-1])
-    critic_loss = torch.stack(losses).mean()
-    z = forward(Actor, actor, batch.observation)
-    value = forward(
-        Critic, {k: a.detach() for k, a in critic.items()}, batch.observation, z.tanh()
+SWITCHES = {
+    'none': ({}, {}),
+    'loss': ({'preactivation_penalty': 0.02, 'normalize_loss': True}, {'twin': True}),
+    'norm': ({'layer_norm': True, 'l2': 1e-2}, {'layer_norm': True, 'merge': 'append'}),
+    'clip': ({'gradient_threshold': 1e-2}, {'gradient_threshold': 0.1, 'l2': 1e-2}),
+    'deep': ({'hidden': (20, 12, 10)}, {'hidden': (16,), 'twin': True, 'initial_value': 2.0}),
+}
+
+
+@pytest.mark.parametrize('switches', SWITCHES)
+def test_updates_are_those_of_the_reference(switches):
+    actor, critic = SWITCHES[switches]
+    agent = make(critic=critic, **actor)
+    batch = fill(agent).inner(0)
+    reference = ReferenceDdpg(
+        agent.actor_config, critic_config(**critic), 0.1, *(arrays_of(agent, t) for t in (0, 1))
     )
-    scale = value.detach().abs().mean() if normalize else 1.0
-    actor_loss = -value.mean() / scale + penalty * (z * z).mean()
-    adam(actor, actor_loss)
-
-    expected = [critic_loss.item(), actor_loss.item(), value.mean().item()]
-    assert [seen.item() for seen in statistics] == pytest.approx(expected)
-    now = stacks_of(agent)
-    for part, expected in (('actor', actor), *learned.items()):
-        for name, array in with_numbers(parts[part], now[part]).items():
-            torch.testing.assert_close(array[0], expected[name].detach(), rtol=1e-9, atol=1e-12)
-    for part in parts:
-        target = f'target_{part}'
-        moved = state[target] + 0.1 * (now[part] - state[target])
-        torch.testing.assert_close(now[target], moved)
+    assert ('twin_critic' in reference.networks) == critic.get('twin', False)
+    for _ in range(3):
+        seen = [each.item() for each in agent.update(batch)]
+        assert seen == pytest.approx(reference.update(batch), rel=1e-7)
+    for target, expected in ((False, reference.networks), (True, reference.targets)):
+        found = arrays_of(agent, target)
+        assert found.keys() == expected.keys()
+        for name, arrays in expected.items():
+            for key, array in arrays.items():
+                torch.testing.assert_close(found[name][key], array.detach(), rtol=1e-7, atol=1e-10)
 
 
 def test_agents_of_a_stack_do_not_touch_one_another():
@@ -249,7 +220,7 @@ def test_same_seed_same_weights():
 
 
 def test_initial_value_is_that_of_every_state_and_of_the_target():
-    agent = make(value=50.0)
+    agent = make(critic={'initial_value': 50.0})
     for part in ('critic', 'target_critic'):
         stack = agent.critic_parameters.like()
         stack.flat.copy_(agent.state_dict()[part])

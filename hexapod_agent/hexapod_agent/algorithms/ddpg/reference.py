@@ -1,0 +1,141 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""The article's DDPG as a textbook writes it, by autograd: what `Ddpg` computes, to be read.
+
+Lillicrap et al. 2016, with the order of operations of MATLAB's DDPG agent. Tests hold `Ddpg`,
+which writes the gradients out, to this.
+"""
+
+from collections.abc import Mapping
+
+import torch
+from torch import Tensor
+from torch.nn.functional import layer_norm
+
+from hexapod_agent.algorithms.ddpg.config import ActorConfig, CriticConfig
+from hexapod_agent.algorithms.policies import NORM_EPSILON
+from hexapod_agent.algorithms.replay import Batch
+
+Arrays = dict[str, Tensor]
+"""Weights '<layer>.weight' (outputs, inputs) and biases '<layer>.bias' (outputs,)."""
+
+
+def affine(arrays: Arrays, layer: str, x: Tensor) -> Tensor:
+    """Return x Wᵀ + b."""
+    return x @ arrays[f'{layer}.weight'].T + arrays[f'{layer}.bias']
+
+
+def activate(x: Tensor, normalize: bool) -> Tensor:
+    """Return the ReLU of x, or of its rows normalised to mean 0 and variance 1."""
+    return (layer_norm(x, x.shape[-1:], eps=NORM_EPSILON) if normalize else x).relu()
+
+
+def preactivation(arrays: Arrays, config: ActorConfig, observation: Tensor) -> Tensor:
+    """Return z, of which the policy is mu(s) = tanh z."""
+    x = observation
+    for number in range(len(config.hidden)):
+        x = activate(affine(arrays, f'hidden{number}', x), config.layer_norm)
+    return affine(arrays, 'output', x)
+
+
+def action_value(
+    arrays: Arrays, config: CriticConfig, observation: Tensor, action: Tensor
+) -> Tensor:
+    """Return Q(s, a): a branch for each input, merged, ReLU, one linear output."""
+    x = observation
+    *below, last = range(len(config.hidden))
+    for number in below:
+        x = activate(affine(arrays, f'observation{number}', x), config.layer_norm)
+    branches = affine(arrays, f'observation{last}', x), affine(arrays, 'action', action)
+    merged = branches[0] + branches[1] if config.merge == 'add' else torch.cat(branches, dim=-1)
+    return affine(arrays, 'output', activate(merged, config.layer_norm))
+
+
+class ClippedStep:
+    """Adam behind an L2 term on weights and a threshold on the norm of each array's gradient."""
+
+    def __init__(self, arrays: Arrays, config: ActorConfig | CriticConfig) -> None:
+        self._arrays, self._config = arrays, config
+        self._optimizer = torch.optim.Adam(arrays.values(), lr=config.learning_rate)
+
+    def take(self, loss: Tensor) -> None:
+        """Move the arrays down the slope of a loss."""
+        self._optimizer.zero_grad()
+        loss.backward()
+        for name, array in self._arrays.items():
+            assert array.grad is not None
+            if name.endswith('.weight'):
+                array.grad.add_(array.detach(), alpha=self._config.l2)
+            threshold = self._config.gradient_threshold
+            array.grad.mul_(threshold / array.grad.norm().clamp(min=threshold))
+        self._optimizer.step()
+
+
+class ReferenceDdpg:
+    """Actor, critics and targets of one agent.
+
+    Attributes:
+        networks: Arrays by network: actor, critic and, if there are two, twin_critic.
+        targets: The same of the networks that follow them.
+    """
+
+    def __init__(
+        self,
+        actor: ActorConfig,
+        critic: CriticConfig,
+        target_smoothing: float,
+        networks: Mapping[str, Arrays],
+        targets: Mapping[str, Arrays],
+    ) -> None:
+        """Begin with copies of such networks, which have had no update."""
+        self._actor, self._critic, self._smoothing = actor, critic, target_smoothing
+        self.networks = {name: _copied(arrays, learned=True) for name, arrays in networks.items()}
+        self.targets = {name: _copied(arrays, learned=False) for name, arrays in targets.items()}
+        self._critics = [name for name in self.networks if name != 'actor']
+        self._steps = {
+            name: ClippedStep(arrays, actor if name == 'actor' else critic)
+            for name, arrays in self.networks.items()
+        }
+
+    def update(self, batch: Batch) -> tuple[float, float, float]:
+        """Take one gradient step from a batch (batch, ...); return what `METRICS` names."""
+        critic_loss = self._update_critics(batch)
+        actor_loss, mean_q = self._update_actor(batch.observation)
+        for name, target in self.targets.items():
+            for key, array in target.items():
+                array.lerp_(self.networks[name][key].detach(), self._smoothing)
+        return critic_loss, actor_loss, mean_q
+
+    def _update_critics(self, batch: Batch) -> float:
+        """Move every Q(s, a) towards y = r + bootstrap min Q'(s', mu'(s'))."""
+        with torch.no_grad():
+            following = batch.next_observation
+            action = preactivation(self.targets['actor'], self._actor, following).tanh()
+            values = [
+                action_value(self.targets[name], self._critic, following, action)
+                for name in self._critics
+            ]
+            wanted = batch.reward + batch.bootstrap * torch.stack(values).amin(dim=0)
+        losses = []
+        for name in self._critics:
+            arrays = self.networks[name]
+            value = action_value(arrays, self._critic, batch.observation, batch.action)
+            losses.append((value - wanted).square().mean())
+            self._steps[name].take(losses[-1])
+        return torch.stack(losses).mean().item()
+
+    def _update_actor(self, observation: Tensor) -> tuple[float, float]:
+        """Move mu(s) up the slope of Q(s, mu(s)) under the critic that was just updated."""
+        config = self._actor
+        frozen = {name: array.detach() for name, array in self.networks['critic'].items()}
+        z = preactivation(self.networks['actor'], config, observation)
+        value = action_value(frozen, self._critic, observation, z.tanh())
+        scale = value.detach().abs().mean() if config.normalize_loss else 1.0
+        loss = -value.mean() / scale + config.preactivation_penalty * z.square().mean()
+        self._steps['actor'].take(loss)
+        return loss.item(), value.mean().item()
+
+
+def _copied(arrays: Arrays, learned: bool) -> Arrays:
+    return {name: array.detach().clone().requires_grad_(learned) for name, array in arrays.items()}
