@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from hexapod_agent.learning.training import Trainer
 from hexapod_agent.nodes.agent_node import AgentNode
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_sim.nodes.sim_node import SimNode
@@ -25,6 +26,19 @@ from trajectory_msgs.msg import JointTrajectory
 pytestmark = pytest.mark.graph
 SEED = 11
 STEPS = 600
+PERFECT = f"""
+observations: {LETTERS}
+training: {{episodes: 1, evaluation: 0}}
+"""
+BAD = """
+sensors:
+  joint_states: {noise: 0.02, rate: 30.0}
+  line_offset: {bias: 0.1, dropout: 0.2}
+  imu_data: {noise: 0.05, bias: 0.1, delay: 0.06, dropout: 0.3, quantisation: 0.01, rate: 20.0}
+  body_height: {noise: 0.005}
+  foot_force: {noise: 1.0, dropout: 0.3}
+  foot_contacts: {noise: 0.1, delay: 0.025}
+"""
 
 
 def planned_actions() -> np.ndarray:
@@ -66,7 +80,8 @@ class ScriptedTrainer(Trainer):
 class Tape:
     """What one path produced."""
 
-    def __init__(self, observations, rewards, targets) -> None:
+    def __init__(self, spec: str, observations, rewards, targets) -> None:
+        self.spec = spec
         self.observations = np.array(observations)
         self.rewards = np.array(rewards)
         self.targets = np.array(targets)
@@ -77,10 +92,11 @@ class Tape:
         np.testing.assert_array_equal(self.targets, other.targets)
 
 
-@pytest.fixture(scope='module')
-def reference() -> Tape:
-    """Play the actions in the Gymnasium environment."""
-    env = gymnasium.make('hexapod_agent:HexapodLine-v0', observations=LETTERS)
+@pytest.fixture(scope='module', params=[PERFECT, PERFECT + BAD], ids=['perfect', 'bad'])
+def reference(request) -> Tape:
+    """Play the actions in the Gymnasium environment, with perfect sensors or bad ones."""
+    spec = RunSpec.from_text(request.param, 'a test')
+    env = gymnasium.make('hexapod_agent:HexapodLine-v0', config=spec)
     observation, _ = env.reset(seed=SEED)
     observations, rewards, targets = [observation], [0.0], []
     for action in planned_actions():
@@ -91,10 +107,10 @@ def reference() -> Tape:
         if terminated or truncated:
             break
     assert len(targets) > STEPS // 4, 'the planned actions end the episode too early'
-    return Tape(observations, rewards, targets)
+    return Tape(request.param, observations, rewards, targets)
 
 
-def play_on_graph(graph) -> Tape:
+def play_on_graph(graph, spec: str) -> Tape:
     """Play the actions through an agent node; sim and pattern generator are there already."""
     trainers: list[ScriptedTrainer] = []
     targets: list[list[list[float]]] = []
@@ -110,13 +126,12 @@ def play_on_graph(graph) -> Tape:
     publishers = graph.nodes[0].count_publishers
     graph.add(AgentNode(make_trainer))
     graph.until(lambda: publishers('joint_trajectory') == 1)
-    spec = f'{{observations: {LETTERS}, training: {{episodes: 1, evaluation: 0}}}}'
     goal = TrainRun.Goal(run_id='one_path', spec=spec, seed=SEED)
     response = graph.train(goal)
     assert response.result.message == ''
     (trainer,) = trainers
     graph.until(lambda: len(targets) == len(trainer.rewards) - 1)
-    return Tape(trainer.observations, trainer.rewards, targets)
+    return Tape(spec, trainer.observations, trainer.rewards, targets)
 
 
 @contextmanager
@@ -132,7 +147,7 @@ def process(*command: str) -> Iterator[subprocess.Popen]:
 
 def test_composed_worker_equals_environment(graph, reference: Tape) -> None:
     graph.add(SimNode(), CpgNode())
-    play_on_graph(graph).assert_equal(reference)
+    play_on_graph(graph, reference.spec).assert_equal(reference)
 
 
 @pytest.mark.system
@@ -141,4 +156,4 @@ def test_separate_processes_equal_environment(graph, reference: Tape) -> None:
         process('ros2', 'run', 'hexapod_sim', 'sim_node'),
         process('ros2', 'run', 'hexapod_cpg', 'cpg_node'),
     ):
-        play_on_graph(graph).assert_equal(reference)
+        play_on_graph(graph, reference.spec).assert_equal(reference)
