@@ -116,7 +116,7 @@ def test_a_seed_gives_the_same_weights_on_the_graph_and_in_the_environment(
     assert_same(on_graph, in_env)
 
 
-def test_a_worker_that_evaluates_gives_signs_of_life(graph, short: str, monkeypatch) -> None:
+def test_a_worker_that_evaluates_gives_signs_of_life(graph, spec, short: str, monkeypatch) -> None:
     monkeypatch.setattr('hexapod_agent.nodes.graph_run._LIFE_S', 0.01)
     agent = AgentNode()
     graph.add(SimNode(), CpgNode(), agent)
@@ -128,7 +128,7 @@ def test_a_worker_that_evaluates_gives_signs_of_life(graph, short: str, monkeypa
         if agent._run is not None:
             heard.append((agent._run.phase, message.feedback.ended))
 
-    goal = TrainRun.Goal(run_id='r', observations='', seed=1, episodes=1, config=short)
+    goal = TrainRun.Goal(run_id='r', spec=spec('', 1, short), seed=1)
     handle = graph.result(client.send_goal_async(goal, note))
     graph.result(handle.get_result_async())
     client.destroy()

@@ -10,7 +10,6 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from hexapod_agent.learning.metrics import METRICS
 from hexapod_bringup.layout import MAKERS, NAMESPACE, main
 from hexapod_bringup.layouts.foxglove import foxglove
 from hexapod_bringup.layouts.plotjuggler import plotjuggler
@@ -18,6 +17,7 @@ from hexapod_doe.bags.bag_file import BagFile
 
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLE = ROOT / 'bags' / 'sample'
+NEWER = ROOT / 'bags' / 'sample_campaign' / 'runs' / 'case01_rep01'
 SHIPPED = ROOT / 'ros_ws/src/hexapod_bringup/layouts'
 FILES = {'foxglove': 'foxglove.json', 'plotjuggler': 'plotjuggler.xml'}
 
@@ -27,7 +27,9 @@ def recorded() -> dict[str, object]:
     """One message of each topic of the shipped bag."""
     bag = BagFile(SAMPLE)
     found = {topic: next(bag.decoded(topic))[1] for topic in bag.types if 'clock' not in topic}
-    found['/hexapod/episode_result'].metric_values = [0.0] * len(METRICS)  # the sample is older
+    # That bag is of before metrics had names.
+    newer = BagFile(NEWER)
+    _, found['/hexapod/episode_result'] = next(newer.decoded(newer.result_topic()))
     return found
 
 

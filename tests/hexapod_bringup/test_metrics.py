@@ -6,6 +6,7 @@
 import json
 import math
 
+import numpy as np
 from hexapod_agent.learning import metrics
 from hexapod_agent.learning.event_log import scalars
 from hexapod_agent.learning.metrics import METRICS, Metric
@@ -37,8 +38,7 @@ def test_a_new_name_is_everywhere(monkeypatch) -> None:
 def test_an_episode_reports_means_over_its_updates_and_names_of_a_learners_own() -> None:
     record = EpisodeRecord(0, ['critic_loss', 'entropy'])
     assert math.isnan(record.summarize(LAST, 1.0).metrics['entropy'])
-    for entropy in (1.0, 2.0):
-        record.add_update({'critic_loss': 0.5, 'entropy': entropy})
+    record.add_updates({'critic_loss': np.full(2, 0.5), 'entropy': np.array([1.0, 2.0])})
     found = record.summarize(LAST, 1.0).metrics
     assert list(found)[: len(METRICS)] == [metric.name for metric in METRICS]
     assert (found['critic_loss'], found['entropy'], found['updates']) == (0.5, 1.5, 2.0)
