@@ -118,6 +118,33 @@ def test_a_stack_fills_the_same_campaign(arguments, tmp_path, monkeypatch):
         assert len(read_run(bag).episodes) == EPISODES
 
 
+def test_runs_learn_side_by_side_that_learn_alike():
+    base = RunSpec.load()
+    specs = {
+        'a': base,
+        'b': base.with_settings(['task.line_y=0.1', 'observations=ABC', 'cpg.hopf.gait=wave']),
+        'c': base.with_settings(['learner.actor.learning_rate=1e-3']),
+        'd': base.with_settings(['training.precision=float32']),
+    }
+    assert run_fleet.learning_alike(specs, 'cpu') == [['a', 'b', 'c'], ['d']]
+    assert run_fleet.learning_alike(specs, 'meta') == [['a', 'b'], ['c'], ['d']]
+
+
+def test_stacks_of_other_learners_follow_one_another(hyperparameters, tmp_path, monkeypatch):
+    (tmp_path / 'factors.yaml').write_text(
+        '- {name: observing, key: observations.C, low: off, high: on}\n'
+        '- {name: layers, key: learner.actor.hidden, low: [8], high: [16, 8]}\n'
+    )
+    made = ['--factors', str(tmp_path / 'factors.yaml'), '--design', 'full', '--replicates', '1']
+    plan.main([*made, '--config', str(hyperparameters), '--out', str(tmp_path / 'plan.csv')])
+    monkeypatch.setattr(run_fleet, 'is_cpu', lambda device: False)
+    given = ['--plan', str(tmp_path / 'plan.csv'), '--episodes', '1', '--processes', '1']
+    assert run_fleet.main(given) == 0
+    for row in Campaign.open(tmp_path / 'plan.csv').rows:
+        kept = agent_file.load(f'{row.bag}.pt').config
+        assert kept == row.spec.with_value('training.episodes', 1, 'test')
+
+
 def test_processes_on_a_device_share_out_rows_and_cores(arguments, tmp_path, monkeypatch):
     started = []
     monkeypatch.setattr(run_fleet, 'is_cpu', lambda device: False)

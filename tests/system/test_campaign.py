@@ -81,7 +81,7 @@ def assert_read_by_rosbags(bag: Path) -> None:
             counts[connection.topic] += 1
         assert counts == {topic: info.msgcount for topic, info in reader.topics.items()}
         sampled = {topic.split('/', 2)[2]: count for topic, count in counts.items()}
-    assert sampled.pop('episode_result') == 2
+    assert [sampled.pop(f'{name}_result') for name in ('episode', 'evaluation')] == [2, 2]
     # A sampled episode has a sensor sample at both its ends, and a command per period between.
     assert {sampled.pop(topic) for topic in ('cpg/command', 'joint_trajectory')} == {STEPS}
     assert set(sampled.values()) == {STEPS + 1}

@@ -16,6 +16,10 @@ from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_agent.specification.sections import CpgConfig
 
 
+class PatternError(RuntimeError):
+    """A pattern generator cannot follow its commands; the text says which."""
+
+
 class Robots:
     """Robots side by side, each with its run's task, giving the numbers that each gives alone.
 
@@ -29,6 +33,8 @@ class Robots:
         self._tasks: list[LineTask | None] = [None] * places
         self._configs: list[CpgConfig | None] = [None] * places
         self._cpgs: dict[CpgConfig, Cpg] = {}
+        self._faults: dict[CpgConfig, str] = {}
+        """Why there are no targets of the pattern generators in this period."""
         self._targets = np.zeros((places, SUBSTEPS, len(JOINTS)))
         self.actions = np.zeros((places, ACTION_SIZE), np.float32)
 
@@ -56,13 +62,24 @@ class Robots:
 
     def command(self) -> None:
         """Turn all actions into the joint targets of the next control period."""
+        self._faults.clear()
         for config, cpg in self._cpgs.items():
             command = command_from_action(self.actions, config.reading, config.ranges)
             mine = [each == config for each in self._configs]
-            self._targets[mine] = cpg.advance(command)[mine]
+            try:
+                self._targets[mine] = cpg.advance(command)[mine]
+            except ValueError as error:
+                self._faults[config] = str(error)
 
     def advance(self, place: int) -> Outcome:
-        """Advance the physics of one robot by what was commanded; places may run in threads."""
+        """Advance the physics of one robot by what was commanded; places may run in threads.
+
+        Raises:
+            PatternError: Nothing could be commanded.
+        """
+        config = self._configs[place]
+        if config in self._faults:
+            raise PatternError(self._faults[config])
         return self._robot(place)[0].advance(self._targets[place])
 
     def observe(self, place: int, spec: ObservationSpec) -> Observation:

@@ -11,6 +11,7 @@ import numpy as np
 from hexapod_sim.task import EVALUATION_SEED, Outcome
 from numpy.typing import NDArray
 
+from hexapod_agent.fleet.robots import PatternError
 from hexapod_agent.learning.player import Agent, Player
 from hexapod_agent.learning.summary import EpisodeSummary
 from hexapod_agent.learning.training import Trainer, TrainingDivergedError
@@ -116,5 +117,5 @@ class Seat:
             return
         try:
             job()
-        except (TrainingDivergedError, ObservationError) as error:
+        except (TrainingDivergedError, ObservationError, PatternError) as error:
             self.fault = error

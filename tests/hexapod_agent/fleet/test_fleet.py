@@ -166,6 +166,17 @@ def test_a_run_that_diverges_leaves_the_others_alone(
     assert_same_results(runs[1], train_alone(new_run(small_config, 'B', 2)))
 
 
+@pytest.mark.filterwarnings('ignore:overflow encountered', 'ignore:invalid value')
+def test_a_pattern_generator_that_breaks_down_leaves_other_ones_alone(
+    small_config, new_run, train_alone, train_fleet
+):
+    wild = small_config.with_settings(['cpg.ranges.mu=[1e200, 0]'])
+    runs = [new_run(config, 'B', 2) for config in (wild, small_config)]
+    train_fleet(runs, places=2)
+    assert 'expected values that the integration can follow' in str(runs[0].end)
+    assert_same_results(runs[1], train_alone(new_run(small_config, 'B', 2)))
+
+
 def test_a_fleet_counts_steps_and_the_parts_of_its_time(small_config, new_run, train_fleet):
     runs = [new_run(small_config, '', seed, episodes=2) for seed in (1, 2)]
     fleet = train_fleet(runs, places=2)
