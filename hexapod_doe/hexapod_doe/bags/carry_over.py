@@ -18,7 +18,7 @@ from typing import Any
 from mcap.records import Channel, McapRecord, Message, Schema
 from mcap_ros2.decoder import DecoderFactory
 
-from hexapod_doe.bags.cuts import cuts_of
+from hexapod_doe.bags.cuts import cuts_of, is_own
 from hexapod_doe.bags.recording import Recording
 from hexapod_doe.bags.rosbag2 import Topic
 from hexapod_doe.bags.run_bag import EPISODE_RESULT, RESUMED, is_evaluation
@@ -71,7 +71,7 @@ def open_recording(
     Raises:
         BagError: the bag cannot be opened or written.
     """
-    cut = find_cut(bag, run_id, keep) if keep else None
+    cut = find_cut(bag, run_id, keep, metadata) if keep else None
     if cut is None:
         recording = Recording(run_id, bag, metadata, period_ns)
         recording.forget_cuts()
@@ -80,13 +80,24 @@ def open_recording(
     return recording, keep, carry_over(recording, cut, keep, result_topic)
 
 
-def find_cut(bag: Path, run_id: str, episodes: int) -> Path | None:
+def find_cut(
+    bag: Path, run_id: str, episodes: int, metadata: Mapping[str, str] | None = None
+) -> Path | None:
     """Return the newest `<bag>.cut_<n>` that holds the first so many episodes of a run, if any.
 
     One of another version, whose messages have other fields, cannot go on: a topic of a bag has
     one definition.
+
+    Args:
+        bag: directory that the run's bag will have.
+        run_id: of the run.
+        episodes: how many.
+        metadata: what else is known of the run; one of another specification is none of it.
     """
+    said = {**(metadata or {}), 'run_id': run_id}
     for cut in cuts_of(bag):
+        if not is_own(cut, bag, said):
+            continue
         found = list(islice(cut_episodes(cut / f'{bag.name}_0.mcap'), episodes))
         numbers = [e.result.episode for e in found if e.result.run_id == run_id]
         if any(e.topic.definition != definition(EPISODE_RESULT) for e in found):

@@ -51,13 +51,21 @@ def _is_useless(found: Mapping[str, str], metadata: Mapping[str, str], closed: b
     """Whether what a cut says of itself shows that it is of no use; it is if it says nothing."""
     if not found:
         return True
+    return _same_run(found, metadata) and (closed or found.get('status') != COMPLETE)
+
+
+def is_own(cut: Path, bag: Path, metadata: Mapping[str, str]) -> bool:
+    """Whether a cut recording of a bag is of the run that this metadata is of."""
+    return _same_run(_said_of(cut / f'{bag.name}_0.mcap'), metadata)
+
+
+def _same_run(found: Mapping[str, str], metadata: Mapping[str, str]) -> bool:
     # A recording that was cut in order states how many episodes it has, not how many were due.
     identities = [
         {k: v for k, v in run_identity(each).items() if k != EPISODES}
         for each in (found, metadata)
     ]
-    own = found.get('run_id') == metadata.get('run_id') and not differences(*identities)
-    return own and (closed or found.get('status') != COMPLETE)
+    return found.get('run_id') == metadata.get('run_id') and not differences(*identities)
 
 
 def _said_of(file: Path) -> dict[str, str]:

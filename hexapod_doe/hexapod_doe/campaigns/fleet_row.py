@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Protocol
 
@@ -71,9 +72,9 @@ class FleetRow:
         """
         self.row, self.episodes, self._watch = row, row.spec.training.episodes, watch
         set_aside(row.bag)
-        self.trainer, cut = self._begin()
-        done = self.trainer.episode
         metadata = _metadata(row, device)
+        self.trainer, cut = self._begin(metadata)
+        done = self.trainer.episode
         if cut is not None:
             metadata[RESUMED] = str(done)
         self._recording = Recording(row.run_id, row.bag, metadata, CONTROL_PERIOD_NS)
@@ -85,7 +86,7 @@ class FleetRow:
             self._last_ns = carry_over(self._recording, cut, done, _RESULTS.name)
         self._events = EventLog(Path(f'{row.bag}.tensorboard'), done)
 
-    def _begin(self) -> tuple[Trainer, Path | None]:
+    def _begin(self, metadata: Mapping[str, str]) -> tuple[Trainer, Path | None]:
         """Return the row's trainer and, where it goes on, the bag with the episodes it has had."""
         row = self.row
         try:
@@ -94,7 +95,7 @@ class FleetRow:
             self._watch.log(f'run {row.run_id} begins anew: {error}')
             trainer = None
         if trainer is not None:
-            cut = find_cut(row.bag, row.run_id, trainer.episode)
+            cut = find_cut(row.bag, row.run_id, trainer.episode, metadata)
             if cut is not None:
                 return trainer, cut
             self._watch.log(

@@ -6,6 +6,7 @@
 from functools import cache
 
 import pytest
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.bags.carry_over import carry_over, cut_episodes, find_cut
 from hexapod_doe.bags.digest import digest
@@ -86,6 +87,18 @@ def test_newest_cut_that_holds_enough_is_found(tmp_path, record):
     assert find_cut(bag, 'r1', 4) is None
     assert find_cut(bag, 'another', 2) is None
     assert find_cut(tmp_path / 'r2', 'r1', 1) is None
+
+
+def test_a_cut_of_another_specification_is_none_of_the_run(tmp_path, record):
+    bag = tmp_path / 'r1'
+    own = RunSpec.load().to_text()
+    other = RunSpec.load(None, ['task.closeness_weight=9']).to_text()
+    record(recording_at(bag, spec=other), range(3))
+    set_aside(bag, takeover=True)
+    assert find_cut(bag, 'r1', 2, {'spec': own}) is None
+    assert find_cut(bag, 'r1', 2, {'spec': other}) == tmp_path / 'r1.cut_1'
+    longer = RunSpec.from_text(other, 'test').with_settings(['training.episodes=9']).to_text()
+    assert find_cut(bag, 'r1', 2, {'spec': longer, 'episodes': '9'}) == tmp_path / 'r1.cut_1'
 
 
 def test_results_of_an_evaluation_are_begun_again(tmp_path, record, samples):
