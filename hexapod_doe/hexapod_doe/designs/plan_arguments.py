@@ -15,6 +15,10 @@ from hexapod_doe.designs.planner import FULL_TRAINING
 _COUNT = whole(ge=1, le=1_000_000)
 _SEED = whole(ge=0, le=MOST_SEED)
 _SHARE = number(gt=0, lt=1)
+_FACTORS = (
+    "The factors are sensors, or by --factors FILE.yaml any keys of a run's specification, each "
+    'with a low and a high value: docs/factors.yaml is an example; see `plan make --help`.'
+)
 COMMANDS = {
     'make': 'make a plan (the default)',
     'fold': 'add the foldover or a semifold of a plan that has been run',
@@ -37,7 +41,7 @@ def parse(words: list[str]) -> argparse.Namespace:
 
 
 def _parser() -> CommandLine:
-    parser = CommandLine(prog='plan', description='Plan a designed experiment.')
+    parser = CommandLine(prog='plan', description='Plan a designed experiment.', epilog=_FACTORS)
     commands = parser.add_subparsers(dest='command', required=True)
     made = {name: commands.add_parser(name, help=text) for name, text in COMMANDS.items()}
     _add_make(made['make'])
