@@ -14,9 +14,11 @@ from contextlib import contextmanager
 import gymnasium
 import numpy as np
 import pytest
+from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.learning.training import Trainer
 from hexapod_agent.nodes.agent_node import AgentNode
 from hexapod_agent.specification.run_spec import RunSpec
+from hexapod_agent.train import evaluate
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_sim.nodes.sim_node import SimNode
@@ -28,7 +30,7 @@ SEED = 11
 STEPS = 600
 PERFECT = f"""
 observations: {LETTERS}
-training: {{episodes: 1, evaluation: 0}}
+training: {{episodes: 1, evaluation: 1}}
 """
 BAD = """
 sensors:
@@ -80,8 +82,8 @@ class ScriptedTrainer(Trainer):
 class Tape:
     """What one path produced."""
 
-    def __init__(self, spec: str, observations, rewards, targets) -> None:
-        self.spec = spec
+    def __init__(self, spec: str, observations, rewards, targets, evaluation: float) -> None:
+        self.spec, self.evaluation = spec, evaluation
         self.observations = np.array(observations)
         self.rewards = np.array(rewards)
         self.targets = np.array(targets)
@@ -90,6 +92,7 @@ class Tape:
         np.testing.assert_array_equal(self.rewards, other.rewards)
         np.testing.assert_array_equal(self.observations, other.observations)
         np.testing.assert_array_equal(self.targets, other.targets)
+        assert self.evaluation == other.evaluation
 
 
 @pytest.fixture(scope='module', params=[PERFECT, PERFECT + BAD], ids=['perfect', 'bad'])
@@ -107,7 +110,8 @@ def reference(request) -> Tape:
         if terminated or truncated:
             break
     assert len(targets) > STEPS // 4, 'the planned actions end the episode too early'
-    return Tape(request.param, observations, rewards, targets)
+    *_, judged = evaluate(HexapodLine(config=spec), Trainer(spec, SEED))
+    return Tape(request.param, observations, rewards, targets, judged.average_return)
 
 
 def play_on_graph(graph, spec: str) -> Tape:
@@ -130,8 +134,10 @@ def play_on_graph(graph, spec: str) -> Tape:
     response = graph.train(goal)
     assert response.result.message == ''
     (trainer,) = trainers
-    graph.until(lambda: len(targets) == len(trainer.rewards) - 1)
-    return Tape(spec, trainer.observations, trainer.rewards, targets)
+    periods = len(trainer.rewards) - 1
+    graph.until(lambda: len(targets) > periods)  # those of the evaluation follow
+    judged = response.result.evaluation_return
+    return Tape(spec, trainer.observations, trainer.rewards, targets[:periods], judged)
 
 
 @contextmanager

@@ -48,7 +48,9 @@ def plan(shell) -> Path:
 
 def results(bag: Path) -> pd.DataFrame:
     """Return what a run's episodes were, apart from when its worker's clock had them end."""
-    return read_run(bag).episodes.drop(columns='stamp_ns')
+    run = read_run(bag)
+    assert len(run.evaluation) == 2
+    return pd.concat([run.episodes, run.evaluation]).drop(columns='stamp_ns')
 
 
 def test_jobs_give_what_the_manager_gives(shell, plan: Path) -> None:

@@ -15,8 +15,11 @@ def text(**changes: object) -> str:
     return yaml.safe_dump(config.to_mapping(), sort_keys=False)
 
 
+RUN = {'observations': 'AC', 'seed': '7', 'episodes': '5', 'evaluation': '20'}
+
+
 def run(**changes: str) -> dict[str, str]:
-    return run_identity({'observations': 'AC', 'seed': '7', 'episodes': '5'} | changes)
+    return run_identity(RUN | changes)
 
 
 @pytest.mark.parametrize(
@@ -27,6 +30,7 @@ def run(**changes: str) -> dict[str, str]:
         ({'observations': ''}, 'observations none, expected AC'),
         ({'seed': '8'}, 'seed 8, expected 7'),
         ({'episodes': '6'}, 'episodes 6, expected 5'),
+        ({'evaluation': '10'}, 'evaluation 10, expected 20'),
         ({'worker': '/w2'}, ''),
     ],
 )
@@ -56,6 +60,8 @@ def test_an_older_configuration_is_filled_up_and_a_strange_one_is_another():
 
 def test_what_a_bag_does_not_state_is_not_held_against_it():
     assert differences({}, run(config=text())) == ''
+    before = {key: value for key, value in run().items() if key != 'evaluation'}
+    assert differences(before, run()) == ''
 
 
 def test_the_odd_ones_are_named_and_the_others_counted():
