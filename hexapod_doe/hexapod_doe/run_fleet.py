@@ -17,9 +17,9 @@ from functools import partial
 from pathlib import Path
 
 import torch
-from hexapod_agent.fleet.crew import Crew
 from hexapod_agent.fleet.fleet import Fleet
 from hexapod_agent.fleet.learners import Learners, SeparateLearners
+from hexapod_agent.fleet.pool import Pool
 from hexapod_agent.fleet.robots import Robots
 from hexapod_agent.fleet.stacked import StackedLearners
 from hexapod_agent.specification.run_spec import RunSpec, add_spec_options
@@ -51,17 +51,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 130
 
 
-def build_fleet(specs: Sequence[RunSpec], slots: int, crew: Crew, device: str) -> Fleet:
+def build_fleet(specs: Sequence[RunSpec], slots: int, pool: Pool, device: str) -> Fleet:
     """Make a fleet for runs of such specifications, which learn alike: see `learning_alike`.
 
     On the CPU each learner computes apart and learns, to the last bit, what it learns alone. On
     any other device all learners are one stack.
     """
-    learners: Learners = SeparateLearners(crew)
+    learners: Learners = SeparateLearners(pool)
     if not is_cpu(device):
         widest = max(spec.observed.size for spec in specs)
-        learners = StackedLearners(specs[0], widest, slots, crew, device)
-    return Fleet(Robots(slots), learners, crew, slots)
+        learners = StackedLearners(specs[0], widest, slots, pool, device)
+    return Fleet(Robots(slots), learners, pool, slots)
 
 
 def learning_alike(specs: Mapping[str, RunSpec], device: str) -> list[list[str]]:
@@ -137,11 +137,11 @@ def _train(campaign: Campaign, due: Mapping[str, RunSpec], args: argparse.Namesp
     """Train rows of such specifications in this process, one group after the other."""
     on_cpu = is_cpu(args.device)
     threads = args.threads or (1 if on_cpu else _CORES)
-    with Crew(threads) as crew, FleetCampaign(campaign, args.device, args.began) as rows:
+    with Pool(threads) as pool, FleetCampaign(campaign, args.device, args.began) as rows:
         for group in learning_alike(due, args.device):
             specs = [due[run_id] for run_id in group]
             slots = min(args.slots or (threads if on_cpu else len(due)), len(group))
-            build_fleet(specs, slots, crew, args.device).train(partial(rows.take, group))
+            build_fleet(specs, slots, pool, args.device).train(partial(rows.take, group))
 
 
 def _parser() -> CommandLine:

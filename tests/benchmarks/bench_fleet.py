@@ -31,7 +31,7 @@ from pathlib import Path
 import yaml
 from bench_graph import Client
 from hexapod_agent.environment.env import HexapodLine
-from hexapod_agent.fleet.crew import Crew
+from hexapod_agent.fleet.pool import Pool
 from hexapod_agent.fleet.stopwatch import Stopwatch
 from hexapod_agent.learning.summary import EpisodeSummary
 from hexapod_agent.learning.training import Trainer
@@ -220,9 +220,9 @@ def fleet(
         wall, cpu = time.perf_counter(), time.process_time()
         made.stopwatch = Stopwatch()
 
-    with Crew(threads or (1 if device == 'cpu' else CORES)) as crew:
+    with Pool(threads or (1 if device == 'cpu' else CORES)) as pool:
         runs = [TimedRun(seed, start_clock) for seed in range(rows)]
-        made = build_fleet([runs[0].trainer.config], rows, crew, device)
+        made = build_fleet([runs[0].trainer.config], rows, pool, device)
         made.train(partial(next, iter(runs), None))
         speed = Speed(rows * STEPS, time.perf_counter() - wall, time.process_time() - cpu)
         return speed, made.stopwatch.shares()

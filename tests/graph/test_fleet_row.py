@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from hexapod_agent.fleet.crew import Crew
+from hexapod_agent.fleet.pool import Pool
 from hexapod_agent.learning.run_checkpoint import checkpoint_path
 from hexapod_agent.learning.training import Trainer, TrainingDivergedError
 from hexapod_agent.nodes.agent_node import AgentNode
@@ -66,8 +66,8 @@ def in_fleet() -> Callable[[Row], Exception | None]:
 
     def train(row: Row) -> Exception | None:
         watch = Quiet()
-        with Crew(2) as crew:
-            fleet = build_fleet([row.spec], 1, crew, 'cpu')
+        with Pool(2) as pool:
+            fleet = build_fleet([row.spec], 1, pool, 'cpu')
             runs = iter([FleetRow(row, 'cpu', watch)])
             fleet.train(partial(next, runs, None))
         return watch.error

@@ -1,36 +1,36 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The loop of a fleet: runs take free places, step side by side, and leave when they are done."""
+"""The loop of a fleet: runs take free slots, step side by side, and leave when they are done."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
 
 from hexapod_sim.task import episode_seed
 
-from hexapod_agent.fleet.crew import Crew, Job
 from hexapod_agent.fleet.learners import Learners
+from hexapod_agent.fleet.pool import Job, Pool
 from hexapod_agent.fleet.robots import Robots
-from hexapod_agent.fleet.seat import Run, Seat
+from hexapod_agent.fleet.slot import Run, Slot
 from hexapod_agent.fleet.stopwatch import Stopwatch
 
 
 class Fleet:
-    """Places for runs that are trained in one process.
+    """Slots for runs that are trained in one process.
 
     Each run does what it does alone, in the same order: observe, act, learn, step. Only
     equal pattern generators are one batch, and with them the learners if they are a stack;
-    physics and separate learners are jobs of the crew.
+    physics and separate learners are jobs of the pool.
 
     Attributes:
         steps: Control periods so far, summed over the runs.
         stopwatch: Where the time went.
     """
 
-    def __init__(self, robots: Robots, learners: Learners, crew: Crew, places: int) -> None:
-        self._robots, self._learners, self._crew = robots, learners, crew
-        self._free = list(range(places))[::-1]
-        self._seats: list[Seat] = []
+    def __init__(self, robots: Robots, learners: Learners, pool: Pool, num_slots: int) -> None:
+        self._robots, self._learners, self._pool = robots, learners, pool
+        self._free = list(range(num_slots))[::-1]
+        self._slots: list[Slot] = []
         self._periods = 0
         self.steps = 0
         self.stopwatch = Stopwatch()
@@ -40,85 +40,85 @@ class Fleet:
 
         Args:
             take: Returns the next run, or None while there is none; asked at the start, and when
-                a place has become free.
+                a slot has become free.
         """
         self._admit(take)
-        while self._seats:
+        while self._slots:
             self._step()
             if self._close():
                 self._admit(take)
 
     def _admit(self, take: Callable[[], Run | None]) -> None:
-        """Give the free places to the runs that come next."""
+        """Give the free slots to the runs that come next."""
         while self._free and (run := take()) is not None:
-            seat = Seat(self._free.pop(), run)
-            self._learners.seat(seat)
-            self._seats.append(seat)
+            slot = Slot(self._free.pop(), run)
+            self._learners.admit(slot)
+            self._slots.append(slot)
 
     def _step(self) -> None:
         """Take every robot through one control period."""
-        if self._periods % self._learners.beat == 0:
+        if self._periods % self._learners.update_interval == 0:
             self._begin_episodes()
         self._periods += 1
-        seats = [seat for seat in self._seats if seat.steps]
+        slots = [slot for slot in self._slots if slot.steps]
         part, timed = self.stopwatch.part, self.stopwatch.timed
         with part('learner'):
-            self._learners.act(seats, self._robots.actions)
+            self._learners.act(slots, self._robots.actions)
         with part('cpg'):
             self._robots.command()
         with part('learner'):
-            jobs = [timed('learner', job) for job in self._learners.learn(seats)]
+            jobs = [timed('learner', job) for job in self._learners.learn(slots)]
         # The longer jobs first, so that the threads end together.
-        self._crew.run([*jobs, *self._physics(seats)])
+        self._pool.run([*jobs, *self._physics(slots)])
         with part('learner'):
             self._learners.collect()
-        self.steps += len(seats)
+        self.steps += len(slots)
 
     def _begin_episodes(self) -> None:
-        """Let every seat that waits begin its next episode."""
-        for seat in self._seats:
-            if seat.waits:
-                seat.waits = False
-                seat.attempt(partial(self._begin_episode, seat))
+        """Let every slot that waits begin its next episode."""
+        for slot in self._slots:
+            if slot.waits:
+                slot.waits = False
+                slot.guard(partial(self._begin_episode, slot))
 
-    def _begin_episode(self, seat: Seat) -> None:
-        run_seed, episode = seat.next_episode
+    def _begin_episode(self, slot: Slot) -> None:
+        run_seed, episode = slot.next_episode
         seed = episode_seed(run_seed, episode)
-        seat.observation, seat.outcome = self._robots.reset(seat.place, seat.trainer.config, seed)
-        seat.agent.begin_episode(episode)
+        slot.observation, slot.outcome = self._robots.reset(slot.index, slot.trainer.config, seed)
+        slot.agent.begin_episode(episode)
 
-    def _physics(self, seats: Sequence[Seat]) -> list[Job]:
-        return [self.stopwatch.timed('physics', partial(self._advance, seat)) for seat in seats]
+    def _physics(self, slots: Sequence[Slot]) -> list[Job]:
+        return [self.stopwatch.timed('physics', partial(self._advance, slot)) for slot in slots]
 
-    def _advance(self, seat: Seat) -> None:
+    def _advance(self, slot: Slot) -> None:
         """Advance one robot and observe it, unless its run has failed."""
 
         def advance() -> None:
-            seat.outcome = self._robots.advance(seat.place)
-            seat.observation = self._robots.observe(seat.place, seat.trainer.spec)
+            slot.outcome = self._robots.advance(slot.index)
+            slot.observation = self._robots.observe(slot.index, slot.trainer.spec)
 
-        seat.attempt(advance)
+        slot.guard(advance)
 
     def _close(self) -> bool:
-        """Close the episodes that are over; return whether a place has become free."""
-        seated = len(self._seats)
-        for seat in list(self._seats):
-            if seat.steps and (seat.outcome.terminated or seat.outcome.truncated):
-                seat.attempt(partial(self._end_episode, seat))
-            if seat.fault is not None:
-                seat.run.failed(seat.fault)
-            elif not seat.is_done:
+        """Close the episodes that are over; return whether a slot has become free."""
+        occupied = len(self._slots)
+        for slot in list(self._slots):
+            if slot.steps and (slot.outcome.terminated or slot.outcome.truncated):
+                slot.guard(partial(self._end_episode, slot))
+            if slot.fault is not None:
+                slot.run.failed(slot.fault)
+            elif not slot.is_done:
                 continue
             else:
-                seat.run.ended()
-            self._seats.remove(seat)
-            self._free.append(seat.place)
-            self._robots.actions[seat.place] = 0.0
-        return len(self._seats) < seated
+                slot.run.ended()
+            self._slots.remove(slot)
+            self._free.append(slot.index)
+            self._robots.actions[slot.index] = 0.0
+        return len(self._slots) < occupied
 
-    def _end_episode(self, seat: Seat) -> None:
+    def _end_episode(self, slot: Slot) -> None:
         """Close one run's episode; its next one, if it has one, is to begin."""
-        if seat.player is None and (seat.run.saves_next or seat.is_last):
-            self._learners.settle(seat)
-        seat.end_episode()
-        seat.waits = True
+        if slot.player is None and (slot.run.saves_next or slot.is_last):
+            self._learners.sync(slot)
+        slot.end_episode()
+        slot.waits = True

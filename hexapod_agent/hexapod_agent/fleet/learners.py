@@ -10,27 +10,27 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from hexapod_agent.fleet.crew import Crew, Job
-from hexapod_agent.fleet.seat import Seat
+from hexapod_agent.fleet.pool import Job, Pool
+from hexapod_agent.fleet.slot import Slot
 from hexapod_agent.learning.numerics import set_numerics
 
 
 class Learners(Protocol):
     """Who chooses the actions of a fleet and learns from what they earn."""
 
-    beat: int
+    update_interval: int
     """Episodes begin at multiples of so many periods, where that lets all learn at once."""
 
-    def seat(self, seat: Seat) -> None:
-        """Take over the networks of a trainer that takes its seat."""
+    def admit(self, slot: Slot) -> None:
+        """Take over the networks of a trainer that is admitted."""
 
-    def settle(self, seat: Seat) -> None:
+    def sync(self, slot: Slot) -> None:
         """Bring a trainer's own networks up to date, so that it can be saved or evaluated."""
 
-    def act(self, seats: Sequence[Seat], actions: NDArray[np.float32]) -> None:
+    def act(self, slots: Sequence[Slot], actions: NDArray[np.float32]) -> None:
         """Show each trainer its observation, and write what it does to its row of actions."""
 
-    def learn(self, seats: Sequence[Seat]) -> list[Job]:
+    def learn(self, slots: Sequence[Slot]) -> list[Job]:
         """Begin the gradient steps that are due; return jobs that are left, for any order."""
 
     def collect(self) -> None:
@@ -43,33 +43,33 @@ class SeparateLearners:
     There, stacked products are no faster than one after another, and not the same to the last bit.
     """
 
-    beat = 1
+    update_interval = 1
 
-    def __init__(self, crew: Crew) -> None:
-        self._crew = crew
+    def __init__(self, pool: Pool) -> None:
+        self._pool = pool
 
-    def seat(self, seat: Seat) -> None:
+    def admit(self, slot: Slot) -> None:
         """Nothing to take over: the trainer's networks are the ones that learn."""
 
-    def settle(self, seat: Seat) -> None:
+    def sync(self, slot: Slot) -> None:
         """Nothing to bring up to date."""
 
-    def act(self, seats: Sequence[Seat], actions: NDArray[np.float32]) -> None:
+    def act(self, slots: Sequence[Slot], actions: NDArray[np.float32]) -> None:
         """Let each trainer act by itself."""
 
-        def act(seat: Seat) -> None:
-            actions[seat.place] = seat.agent.observe(seat.observation, seat.outcome)
+        def act(slot: Slot) -> None:
+            actions[slot.index] = slot.agent.observe(slot.observation, slot.outcome)
 
-        self._crew.run(partial(seat.attempt, partial(act, seat)) for seat in seats)
+        self._pool.run(partial(slot.guard, partial(act, slot)) for slot in slots)
 
-    def learn(self, seats: Sequence[Seat]) -> list[Job]:
+    def learn(self, slots: Sequence[Slot]) -> list[Job]:
         """Return one job per trainer."""
-        return [partial(seat.attempt, partial(_learn, seat)) for seat in seats]
+        return [partial(slot.guard, partial(_learn, slot)) for slot in slots]
 
     def collect(self) -> None:
         """Nothing to wait for: the jobs were all."""
 
 
-def _learn(seat: Seat) -> None:
-    set_numerics(seat.trainer.config.training.precision)  # of this thread, and of this run
-    seat.agent.learn()
+def _learn(slot: Slot) -> None:
+    set_numerics(slot.trainer.config.training.precision)  # of this thread, and of this run
+    slot.agent.learn()

@@ -26,38 +26,38 @@ class Robots:
     Those with equal pattern generators compute them as one batch.
 
     Attributes:
-        actions: What each robot is told next (places, 30); zeros where nobody is.
+        actions: What each robot is told next (slots, 30); zeros where nobody is.
     """
 
-    def __init__(self, places: int) -> None:
-        self._tasks: list[LineTask | None] = [None] * places
-        self._configs: list[CpgConfig | None] = [None] * places
+    def __init__(self, slots: int) -> None:
+        self._tasks: list[LineTask | None] = [None] * slots
+        self._configs: list[CpgConfig | None] = [None] * slots
         self._cpgs: dict[CpgConfig, Cpg] = {}
         self._faults: dict[CpgConfig, str] = {}
         """Why there are no targets of the pattern generators in this period."""
-        self._targets = np.zeros((places, SUBSTEPS, len(JOINTS)))
-        self.actions = np.zeros((places, ACTION_SIZE), np.float32)
+        self._targets = np.zeros((slots, SUBSTEPS, len(JOINTS)))
+        self.actions = np.zeros((slots, ACTION_SIZE), np.float32)
 
-    def reset(self, place: int, config: RunSpec, seed: int) -> tuple[Observation, Outcome]:
-        """Begin an episode of a run at one place, and observe its start."""
-        self._configs[place] = config.cpg
+    def reset(self, slot: int, config: RunSpec, seed: int) -> tuple[Observation, Outcome]:
+        """Begin an episode of a run at one slot, and observe its start."""
+        self._configs[slot] = config.cpg
         for unused in set(self._cpgs) - set(self._configs):
             del self._cpgs[unused]
         if config.cpg not in self._cpgs:
             self._cpgs[config.cpg] = Cpg(config.cpg.hopf, (len(self._tasks),))
         cpg = self._cpgs[config.cpg]
-        cpg.x[place], cpg.y[place] = start_state(cpg.config)
-        self.actions[place] = 0.0
-        task = self._task(place, config)
+        cpg.x[slot], cpg.y[slot] = start_state(cpg.config)
+        self.actions[slot] = 0.0
+        task = self._task(slot, config)
         outcome = task.reset(seed)
-        return self.observe(place, config.observed), outcome
+        return self.observe(slot, config.observed), outcome
 
-    def _task(self, place: int, config: RunSpec) -> LineTask:
-        """Return the task at a place, which is kept as long as its runs have the same."""
-        task = self._tasks[place]
+    def _task(self, slot: int, config: RunSpec) -> LineTask:
+        """Return the task at a slot, which is kept as long as its runs have the same."""
+        task = self._tasks[slot]
         if task is None or (task.config, task.sensors.qualities) != (config.task, config.sensors):
             # A model of its own for each: advancing switches the model's sensors off and on.
-            task = self._tasks[place] = LineTask(config.task, config.sensors)
+            task = self._tasks[slot] = LineTask(config.task, config.sensors)
         return task
 
     def command(self) -> None:
@@ -71,29 +71,29 @@ class Robots:
             except ValueError as error:
                 self._faults[config] = str(error)
 
-    def advance(self, place: int) -> Outcome:
-        """Advance the physics of one robot by what was commanded; places may run in threads.
+    def advance(self, slot: int) -> Outcome:
+        """Advance the physics of one robot by what was commanded; slots may run in threads.
 
         Raises:
             PatternError: Nothing could be commanded.
         """
-        config = self._configs[place]
+        config = self._configs[slot]
         if config in self._faults:
             raise PatternError(self._faults[config])
-        return self._robot(place)[0].advance(self._targets[place])
+        return self._robot(slot)[0].advance(self._targets[slot])
 
-    def observe(self, place: int, spec: ObservationSpec) -> Observation:
+    def observe(self, slot: int, spec: ObservationSpec) -> Observation:
         """Observe one robot, its action being the one that was commanded last.
 
         Raises:
             hexapod_agent.specification.observation.ObservationError: A reading is not finite.
         """
-        task, cpg = self._robot(place)
-        return read_observation(task, cpg.x[place], cpg.y[place], spec, self.actions[place])
+        task, cpg = self._robot(slot)
+        return read_observation(task, cpg.x[slot], cpg.y[slot], spec, self.actions[slot])
 
-    def _robot(self, place: int) -> tuple[LineTask, Cpg]:
-        """Return task and pattern generator at a place where an episode has begun."""
-        task, config = self._tasks[place], self._configs[place]
+    def _robot(self, slot: int) -> tuple[LineTask, Cpg]:
+        """Return task and pattern generator at a slot where an episode has begun."""
+        task, config = self._tasks[slot], self._configs[slot]
         assert task is not None
         assert config is not None
         return task, self._cpgs[config]

@@ -10,7 +10,7 @@ import pytest
 from hexapod_agent.deployment import agent_file
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.environment.evaluation import run_episode
-from hexapod_agent.fleet.crew import Crew
+from hexapod_agent.fleet.pool import Pool
 from hexapod_agent.fleet.stacked import StackedLearners
 from hexapod_agent.learning import checkpoint
 from hexapod_agent.learning.training import Trainer
@@ -61,8 +61,8 @@ def test_it_is_trained_resumed_and_played(search, tmp_path):
 
 
 def test_an_algorithm_without_a_stack_is_refused_on_a_device(search):
-    with Crew(1) as crew, pytest.raises(ConfigError, match='random_search, which learns on the'):
-        StackedLearners(search, 100, 1, crew, 'cpu')
+    with Pool(1) as pool, pytest.raises(ConfigError, match='random_search, which learns on the'):
+        StackedLearners(search, 100, 1, pool, 'cpu')
 
 
 def test_a_specification_loads_no_torch():

@@ -8,11 +8,11 @@ from functools import partial
 
 import pytest
 from hexapod_agent.environment.env import HexapodLine
-from hexapod_agent.fleet.crew import Crew
 from hexapod_agent.fleet.fleet import Fleet
 from hexapod_agent.fleet.learners import Learners, SeparateLearners
+from hexapod_agent.fleet.pool import Pool
 from hexapod_agent.fleet.robots import Robots
-from hexapod_agent.fleet.seat import Run
+from hexapod_agent.fleet.slot import Run
 from hexapod_agent.fleet.stacked import StackedLearners
 from hexapod_agent.learning.summary import EpisodeSummary
 from hexapod_agent.learning.training import Trainer
@@ -83,15 +83,17 @@ def train_alone() -> Callable[[NotedRun], NotedRun]:
 def train_fleet() -> Callable[..., Fleet]:
     """Train runs of one configuration in a fleet."""
 
-    def train(runs: list[NotedRun], places: int, threads: int = 2, stacked: bool = False) -> Fleet:
+    def train(
+        runs: list[NotedRun], num_slots: int, threads: int = 2, stacked: bool = False
+    ) -> Fleet:
         config = runs[0].trainer.config
-        with Crew(threads) as crew:
+        with Pool(threads) as pool:
             learners: Learners = (
-                StackedLearners(config, ObservationSpec(LETTERS).size, places, crew, 'cpu')
+                StackedLearners(config, ObservationSpec(LETTERS).size, num_slots, pool, 'cpu')
                 if stacked
-                else SeparateLearners(crew)
+                else SeparateLearners(pool)
             )
-            fleet = Fleet(Robots(places), learners, crew, places)
+            fleet = Fleet(Robots(num_slots), learners, pool, num_slots)
             fleet.train(partial(next, iter(runs), None))
         return fleet
 

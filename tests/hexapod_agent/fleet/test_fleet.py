@@ -54,8 +54,8 @@ def test_runs_equal_those_trained_alone_to_the_last_bit(
     full_config, new_run, train_alone, train_fleet, threads
 ):
     fleet = [new_run(full_config, letters, seed) for letters, seed in RUNS]
-    # Fewer places than runs: the third run takes the place that is free first.
-    train_fleet(fleet, places=2, threads=threads)
+    # Fewer slots than runs: the third run takes the slot that is free first.
+    train_fleet(fleet, num_slots=2, threads=threads)
     for run, (letters, seed) in zip(fleet, RUNS, strict=True):
         alone = train_alone(new_run(full_config, letters, seed))
         assert run.end == 'ended'
@@ -72,7 +72,7 @@ def test_bad_sensors_are_as_bad_in_a_fleet(small_config, new_run, train_alone, t
     }
     config = small_config.changed({'sensors': bad}, 'a test')
     fleet = [new_run(config, letters, seed) for letters, seed in RUNS]
-    train_fleet(fleet, places=2)
+    train_fleet(fleet, num_slots=2)
     for run, (letters, seed) in zip(fleet, RUNS, strict=True):
         assert_same_results(run, train_alone(new_run(config, letters, seed)))
     perfect = train_alone(new_run(small_config, *RUNS[0]))
@@ -90,7 +90,7 @@ def test_runs_of_other_specifications_equal_those_trained_alone(
     )
     configs = [small_config.with_settings(each) for each in settings]
     fleet = [new_run(config, 'CE', seed) for seed, config in enumerate(configs)]
-    train_fleet(fleet, places=2)
+    train_fleet(fleet, num_slots=2)
     for seed, (run, config) in enumerate(zip(fleet, configs, strict=True)):
         alone = train_alone(new_run(config, 'CE', seed))
         assert run.end == 'ended'
@@ -103,7 +103,7 @@ def test_another_algorithm_learns_in_a_fleet_what_it_learns_alone(
     search, new_run, train_alone, train_fleet
 ):
     fleet, alone = ([new_run(search, 'B', seed) for seed in (1, 2)] for _ in range(2))
-    train_fleet(fleet, places=2)
+    train_fleet(fleet, num_slots=2)
     for ours, theirs in zip(fleet, alone, strict=True):
         assert_same_results(ours, train_alone(theirs))
 
@@ -114,7 +114,7 @@ def test_a_stack_learns_what_its_runs_learn_alone(
 ):
     config = request.getfixturevalue(name)
     stacked = [new_run(config, letters, seed) for letters, seed in RUNS]
-    train_fleet(stacked, places=2, stacked=True)
+    train_fleet(stacked, num_slots=2, stacked=True)
     for run, (letters, seed) in zip(stacked, RUNS, strict=True):
         alone = train_alone(new_run(config, letters, seed))
         # Sums are rounded otherwise, and small differences grow from step to step.
@@ -136,9 +136,9 @@ def test_agents_of_a_stack_learn_at_once_after_one_of_them_fell(
     advance, collect = Robots.advance, StackedLearners.collect
     learning = []
 
-    def advance_to_a_fall(robots, place):
-        outcome = advance(robots, place)
-        falls = outcome.step == 5 and place == 0 and not runs[0].summaries
+    def advance_to_a_fall(robots, slot):
+        outcome = advance(robots, slot)
+        falls = outcome.step == 5 and slot == 0 and not runs[0].summaries
         return replace(outcome, terminated=True, cause='fell') if falls else outcome
 
     def counted_collect(learners):
@@ -149,7 +149,7 @@ def test_agents_of_a_stack_learn_at_once_after_one_of_them_fell(
 
     monkeypatch.setattr(Robots, 'advance', advance_to_a_fall)
     monkeypatch.setattr(StackedLearners, 'collect', counted_collect)
-    train_fleet(runs, places=2, stacked=True)
+    train_fleet(runs, num_slots=2, stacked=True)
     assert [run.summaries[0].steps for run in runs] == [5, 40]
     # A batch is 16. The robot that fell begins again with the next group of 8: after 24 periods
     # the other has 23 transitions and it has 20. It is through after 48, the other after 80.
@@ -161,7 +161,7 @@ def test_a_run_that_diverges_leaves_the_others_alone(
 ):
     runs = [new_run(small_config, 'B', seed) for seed in (1, 2)]
     runs[0].trainer.learner.networks.critic_parameters.flat.fill_(float('inf'))
-    train_fleet(runs, places=2)
+    train_fleet(runs, num_slots=2)
     assert isinstance(runs[0].end, TrainingDivergedError)
     assert_same_results(runs[1], train_alone(new_run(small_config, 'B', 2)))
 
@@ -172,14 +172,14 @@ def test_a_pattern_generator_that_breaks_down_leaves_other_ones_alone(
 ):
     wild = small_config.with_settings(['cpg.ranges.mu=[1e200, 0]'])
     runs = [new_run(config, 'B', 2) for config in (wild, small_config)]
-    train_fleet(runs, places=2)
+    train_fleet(runs, num_slots=2)
     assert 'expected values that the integration can follow' in str(runs[0].end)
     assert_same_results(runs[1], train_alone(new_run(small_config, 'B', 2)))
 
 
 def test_a_fleet_counts_steps_and_the_parts_of_its_time(small_config, new_run, train_fleet):
     runs = [new_run(small_config, '', seed, episodes=2) for seed in (1, 2)]
-    fleet = train_fleet(runs, places=2)
+    fleet = train_fleet(runs, num_slots=2)
     had = (summary for run in runs for summary in (*run.summaries, *run.evaluation))
     assert fleet.steps == sum(summary.steps for summary in had)
     shares = fleet.stopwatch.shares()

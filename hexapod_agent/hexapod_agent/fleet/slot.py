@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""A run's place in a fleet, and what the fleet asks of a run."""
+"""A run's slot in a fleet, and what the fleet asks of a run."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -22,7 +22,7 @@ class Run(Protocol):
     """A training run, and what becomes of it."""
 
     trainer: Trainer
-    """The run, between two episodes when it takes its seat."""
+    """The run, between two episodes when it is admitted."""
     episodes: int
     """How many it is to have."""
 
@@ -44,21 +44,21 @@ class Run(Protocol):
 
 
 @dataclass
-class Seat:
-    """A run at a place of the fleet.
+class Slot:
+    """A run in a slot of the fleet.
 
     Attributes:
-        place: Its number in every batch.
-        run: Who sits there.
+        index: Its number in every batch.
+        run: Who is there.
         observation: What its robot observes now (size,); undefined while it waits.
         outcome: What its last step earned; likewise.
         waits: Whether its next episode has not begun yet.
-        fault: Why the run cannot go on; no job is attempted for it any more.
+        fault: Why the run cannot go on; no job is done for it any more.
         player: Plays what the run has learned, once it is being evaluated.
         evaluated: Complete episodes of the evaluation.
     """
 
-    place: int
+    index: int
     run: Run
     observation: NDArray[np.float32] = field(init=False)
     outcome: Outcome = field(init=False)
@@ -111,7 +111,7 @@ class Seat:
         """Whether its robot is in an episode and goes on."""
         return self.fault is None and not self.waits
 
-    def attempt(self, job: Callable[[], None]) -> None:
+    def guard(self, job: Callable[[], None]) -> None:
         """Do something for this run alone; a failure of its training is its own fault."""
         if self.fault is not None:
             return

@@ -1,22 +1,22 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""A crew does every job once, over its threads, and tells of the one that failed."""
+"""A pool does every job once, over its threads, and tells of the one that failed."""
 
 import threading
 from functools import partial
 
 import pytest
 import torch
-from hexapod_agent.fleet.crew import Crew
+from hexapod_agent.fleet.pool import Pool
 
 
 @pytest.mark.parametrize('threads', [1, 3])
 def test_each_job_is_done_once(threads):
     done: list[int] = []
-    with Crew(threads) as crew:
-        crew.run(partial(done.append, number) for number in range(200))
-        crew.run([])
+    with Pool(threads) as pool:
+        pool.run(partial(done.append, number) for number in range(200))
+        pool.run([])
     assert sorted(done) == list(range(200))
 
 
@@ -29,8 +29,8 @@ def test_jobs_run_at_once_and_compute_with_one_thread():
         counts.append(torch.get_num_threads())
 
     torch.set_num_threads(1)  # as every trainer does, in the thread that it is made in
-    with Crew(3) as crew:
-        crew.run([job] * 3)
+    with Pool(3) as pool:
+        pool.run([job] * 3)
     assert counts == [1, 1, 1]
 
 
@@ -40,13 +40,13 @@ def test_error_of_a_job_is_raised_after_the_others_are_done():
     def fail() -> None:
         raise RuntimeError('job 7 failed')
 
-    with Crew(2) as crew:
+    with Pool(2) as pool:
         jobs = [partial(done.append, number) for number in range(20)]
         with pytest.raises(RuntimeError, match='job 7 failed'):
-            crew.run([*jobs[:7], fail, *jobs[7:]])
+            pool.run([*jobs[:7], fail, *jobs[7:]])
     assert sorted(done) == list(range(20))
 
 
-def test_crew_without_threads_is_refused():
+def test_a_pool_without_threads_is_refused():
     with pytest.raises(ValueError, match='threads: 0, expected at least 1'):
-        Crew(0)
+        Pool(0)

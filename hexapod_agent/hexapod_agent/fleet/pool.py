@@ -13,7 +13,7 @@ import torch
 Job = Callable[[], None]
 
 
-class Crew:
+class Pool:
     """A fixed count of threads, the caller's own among them.
 
     MuJoCo and torch leave the interpreter to other threads while they compute. Which thread does
@@ -21,7 +21,7 @@ class Crew:
     """
 
     def __init__(self, threads: int) -> None:
-        """Hire the crew.
+        """Start the threads.
 
         Raises:
             ValueError: There is no thread in it.
@@ -30,8 +30,8 @@ class Crew:
             raise ValueError(f'threads: {threads}, expected at least 1')
         self.threads = threads
         # A sum split over threads is not the same to the last bit: each computes with one.
-        self._pool = ThreadPoolExecutor(
-            max(threads - 1, 1), 'crew', initializer=torch.set_num_threads, initargs=(1,)
+        self._executor = ThreadPoolExecutor(
+            max(threads - 1, 1), 'fleet', initializer=torch.set_num_threads, initargs=(1,)
         )
 
     def run(self, jobs: Iterable[Job]) -> None:
@@ -49,7 +49,7 @@ class Crew:
                 job()
 
         helpers = min(self.threads, len(queue)) - 1
-        futures = [self._pool.submit(work) for _ in range(helpers)]
+        futures = [self._executor.submit(work) for _ in range(helpers)]
         try:
             work()
         finally:
@@ -65,4 +65,4 @@ class Crew:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self._pool.shutdown()
+        self._executor.shutdown()
