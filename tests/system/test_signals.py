@@ -66,13 +66,13 @@ def plan(shell) -> None:
     assert made.returncode == 0, made.stderr
 
 
-def end(process: subprocess.Popen[str], shell, expected: int = 0) -> None:
+def end(process: subprocess.Popen[str], shell, *expected: int) -> None:
     """Send two SIGINT and look how it ends."""
     process.send_signal(signal.SIGINT)
     time.sleep(BETWEEN_S)
     if process.poll() is None:
         process.send_signal(signal.SIGINT)
-    assert process.wait(30.0) == expected, shell.output()
+    assert process.wait(30.0) in (expected or (0,)), shell.output()
     assert 'Traceback' not in shell.output()
     assert 'KeyboardInterrupt' not in shell.output()
 
@@ -84,8 +84,8 @@ def test_two_interrupts_end_a_node_with_status_0(shell, plan, observer: Node, na
     line, node = LINES[name]
     process = shell.start(line)
     shell.until(lambda: node in observer.get_node_names(), 60.0)
-    # The status of `shadow` is what it found: the bag is of another agent.
-    end(process, shell, expected=int(name == 'shadow'))
+    # `shadow` may have ended by itself, with 1, as the bag is of another agent.
+    end(process, shell, *((0, 1) if name == 'shadow' else (0,)))
     shell.until(lambda: node not in observer.get_node_names(), 60.0)
 
 
@@ -94,7 +94,7 @@ def test_two_interrupts_end_a_row_as_interrupted(shell, plan) -> None:
     process = shell.start(CASE)
     shell.until(lambda: (shell.directory / 'jobs').is_dir(), 60.0)
     shell.until(lambda: any((shell.directory / 'jobs' / 'runs').glob('*.partial')), 60.0)
-    end(process, shell, expected=1)
+    end(process, shell, 1)
     assert 'the same command goes on' in shell.output()
 
 

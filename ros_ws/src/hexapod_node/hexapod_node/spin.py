@@ -78,15 +78,20 @@ def _status_of(error: Exception, started: bool) -> int:
         error: what making or spinning the nodes raised.
         started: whether they were made.
     """
-    stopped = signals.requested() or isinstance(error, RCLError)
-    if stopped and not rclpy.ok():
-        return 0  # a signal came amid a callback or a start, whose end is no loss
+    if _stopped(error):
+        return 0
     starting = not started and isinstance(error, ValueError | OSError | ParameterException)
     if not starting and not isinstance(error, NoProgressError):
         raise error
     name = remove_ros_args(sys.argv)[0].rsplit('/', 1)[-1]
     print(f'{name}: {error}', file=sys.stderr)
     return 1
+
+
+def _stopped(error: Exception) -> bool:
+    """Whether an error is that of a callback or a start amid which a signal came: no loss."""
+    known = isinstance(error, ExternalShutdownException | RCLError)
+    return (known or signals.requested()) and not rclpy.ok()
 
 
 def _limit_teardown() -> None:
@@ -140,8 +145,10 @@ def serving(
         for node in made:
             executor.add_node(node)
         yield executor, nodes
-    except ExternalShutdownException:
-        raise SystemExit(0) from None
+    except Exception as error:
+        if _stopped(error):
+            raise SystemExit(0) from None
+        raise
     finally:
         executor.shutdown()
         for node in reversed(made):
