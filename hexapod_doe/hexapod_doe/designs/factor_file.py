@@ -11,7 +11,8 @@ from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_agent.specification.spec_text import ConfigError, parsed, quoted
 
 from hexapod_doe.designs.design import MAX_FACTORS, MIN_FACTORS
-from hexapod_doe.designs.factor import OBSERVATIONS, Factor, Treatments, check_levels
+from hexapod_doe.designs.factor import OBSERVATIONS, Factor, Treatments
+from hexapod_doe.designs.factor_levels import check_levels
 from hexapod_doe.designs.terms import LETTERS
 
 _NEEDED = ('name', 'key', 'low', 'high')

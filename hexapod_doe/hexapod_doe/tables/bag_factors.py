@@ -57,7 +57,12 @@ def set_of(run: RunRecord) -> str:
         return known(run, 'observations')
     found, letters = settings(run.metadata), ''
     for factor in factors:
-        high = known(run, factor.letter) == '1'
+        level = known(run, factor.letter)
+        if level not in ('-1', '1'):
+            raise BagError(
+                f'run {run.run_id}: level {factor.letter} is {level!r}, expected -1 or 1'
+            )
+        high = level == '1'
         expected = spec_values({factor.key: factor.value(1 if high else -1)})
         if odd := plan_differences(found, expected):
             raise BagError(f'run {run.run_id}: {odd} by the level of factor {factor.name!r}')

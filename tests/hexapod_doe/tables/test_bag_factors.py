@@ -104,3 +104,20 @@ def test_responses_are_by_the_set_of_high_levels(campaign: Path) -> None:
     found = bag_responses(campaign, 'final_average_reward')
     assert len(found) == 8
     assert {'(none)', 'ABCD'} < set(found)
+
+
+@pytest.mark.parametrize(
+    ('key', 'value', 'message'),
+    [
+        ('A', 'high', "level A is 'high', expected -1 or 1"),
+        ('factors', '- {name: a}', 'expected a list of factors'),
+        ('factors', '3', 'expected a list of factors'),
+        ('factors', '[', 'expected a list of factors'),
+    ],
+)
+def test_a_foreign_bag_is_refused_in_one_line(campaign, write_bag, key, value, message) -> None:
+    row = read_rows(campaign / 'plan.csv')[0]
+    path = write_bag('elsewhere/odd', samples=0, **(dict(row.metadata) | {key: value}))
+    with pytest.raises(BagError, match=message) as caught:
+        bag_responses(path.parent, 'mean_return')
+    assert '\n' not in str(caught.value)
