@@ -7,8 +7,9 @@ article.yaml holds every value with its origin. A file of one's own names only w
 YAML is the text form; a dotted key such as 'learner.actor.learning_rate' names one value.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass, fields
+from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -179,6 +180,8 @@ class RunSpec:
 
 
 T = TypeVar('T')
+# One takes longer to make than to use.
+_adapter: Callable[[Any], TypeAdapter[Any]] = cache(TypeAdapter)
 
 # Sections of the layout before there was one for the learner, of bags and checkpoints.
 _OF_THE_LEARNER = ('actor', 'critic', 'ddpg', 'noise')
@@ -222,7 +225,8 @@ def _build(base: Mapping[str, Any], changes: Any, source: str) -> RunSpec:
 def _validated(kind: type[T], values: Any, source: str, prefix: str = '') -> T:
     """Make a section of its values."""
     try:
-        return TypeAdapter(kind).validate_python(values)
+        found: T = _adapter(kind).validate_python(values)
+        return found
     except ValidationError as error:
         first = error.errors()[0]
         key = prefix + '.'.join(str(part) for part in first['loc'])

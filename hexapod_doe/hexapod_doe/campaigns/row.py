@@ -78,7 +78,8 @@ class Row:
 
     def without_varied(self, settings: Mapping[str, str]) -> dict[str, str]:
         """Return the settings of a run that others of the plan should have, too."""
-        return {key: value for key, value in settings.items() if key not in self.varied}
+        varied = self.varied
+        return {key: value for key, value in settings.items() if key not in varied}
 
     @property
     def identity(self) -> dict[str, str]:
