@@ -4,6 +4,7 @@
 """A resumed run is the uninterrupted one to the last bit; a broken file is refused by name."""
 
 import pickle
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 import torch
 from hexapod_agent.deployment import agent_file
 from hexapod_agent.deployment.agent_file import CheckpointError
+from hexapod_agent.deployment.sealed_file import write_sealed
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.learning import checkpoint
 from hexapod_agent.train import train_episode
@@ -106,17 +108,23 @@ def test_failed_write_leaves_the_old_file(make_trainer, tmp_path, monkeypatch):
     assert path.read_bytes() == before
 
 
+def content_of_before(trainer) -> dict:
+    """What checkpoints held before they held a policy."""
+    run = {'episode': trainer.episode, 'returns': trainer.returns}
+    return {'seed': trainer.seed, 'state': run | trainer.learner.state_dict()}
+
+
 def write_unsealed(path, trainer) -> None:
     """Write a checkpoint as it was written before files had a seal."""
-    content = {
-        'format': 'hexapod-checkpoint-1',
-        'observations': trainer.spec.letters,
-        'seed': trainer.seed,
-        'config': trainer.config.to_mapping(),
-        'state': {'episode': trainer.episode, 'returns': trainer.returns}
-        | trainer.learner.state_dict(),
-    }
+    config = {'config': trainer.config.to_mapping(), 'observations': trainer.spec.letters}
+    content = {'format': 'hexapod-checkpoint-1'} | config | content_of_before(trainer)
     torch.save(content, path)
+
+
+def write_without_policy(path, trainer) -> None:
+    """Write a checkpoint as it was written before it held the policy apart."""
+    spec = {'format': 'hexapod-checkpoint-2', 'spec': trainer.config.to_mapping()}
+    write_sealed(path, partial(torch.save, spec | content_of_before(trainer)))
 
 
 def mutated(content: bytes, rng: np.random.Generator) -> bytes:
@@ -196,11 +204,19 @@ def test_a_lost_seal_does_not_make_an_old_file(make_trainer, tmp_path, cut):
         agent_file.load(path)
 
 
-def test_files_of_before_the_seal_still_load(make_trainer, tmp_path):
-    trainer = make_trainer()
+@pytest.mark.parametrize('write', [write_unsealed, write_without_policy])
+@pytest.mark.parametrize('name', ['small_config', 'switched_config'])
+def test_files_of_before_still_resume_and_act(make_trainer, tmp_path, request, write, name):
+    trainer = make_trainer(config=request.getfixturevalue(name))
     advance(trainer, 2)
-    write_unsealed(tmp_path / 'old.pt', trainer)
+    write(tmp_path / 'old.pt', trainer)
     assert_same(checkpoint.load(tmp_path / 'old.pt'), trainer)
+    seen = np.linspace(-1.0, 1.0, trainer.spec.size, dtype=np.float32)
+    action = agent_file.load(tmp_path / 'old.pt').policy(seen)
+    np.testing.assert_array_equal(action, trainer.learner.act(seen, explore=False))
+
+
+def test_the_shipped_agent_loads():
     shipped = agent_file.load(AGENTS / 'ABCDE.pt')
     assert (shipped.spec.letters, shipped.episode) == ('ABCDE', 300)
 
