@@ -22,8 +22,8 @@ setup(
     zip_safe=False,
     entry_points={
         'console_scripts': [
-            'agent_node = hexapod_agent.executables:agent_node',
-            'play_node = hexapod_agent.executables:play_node',
+            'agent_node = hexapod_agent.nodes.executables:agent_node',
+            'play_node = hexapod_agent.nodes.executables:play_node',
             'train = hexapod_agent.train:main',
             'evaluate = hexapod_agent.evaluate:main',
             'export = hexapod_agent.export:main',
