@@ -71,7 +71,7 @@ CHAPTERS = (
     Chapter(
         'answer',
         'The best sets',
-        'Which {noun}s the best predicted sets hold, and how far apart they are.',
+        'Which {held}, and how far apart they are.',
         (
             tables.factors,
             predictions.top_sets,

@@ -85,12 +85,13 @@ def render(analysis: Analysis, chapters: Iterable[Section]) -> str:
 
 def sections(analysis: Analysis) -> list[Section]:
     """Return the chapters that the analysis has something to say in."""
-    noun = words(analysis.design).noun
+    named = words(analysis.design)
+    noun = named.noun
     made = [
         Section(
             chapter.anchor,
             chapter.title.format(noun=noun),
-            chapter.lead.format(noun=noun),
+            chapter.lead.format(noun=noun, held=named.sets_hold),
             chapter.items(analysis),
         )
         for chapter in CHAPTERS

@@ -35,6 +35,7 @@ class Words:
     """What a panel of two factors shows."""
     held: str
     """What the letters of a set stand for."""
+    sets_hold: str
     question: str
     """What a report on few data does not answer."""
 
@@ -56,6 +57,7 @@ SENSORS = Words(
         '(filled) the second one. Parallel lines mean that the sensors act independently.'
     ),
     held='its sensors',
+    sets_hold='sensors the best predicted sets hold',
     question='which sensors to buy',
 )
 FACTORS = Words(
@@ -76,6 +78,7 @@ FACTORS = Words(
         'independently.'
     ),
     held='its factors at the high level',
+    sets_hold='factors the best predicted sets have at their high level',
     question='which levels to choose',
 )
 
