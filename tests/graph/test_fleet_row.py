@@ -13,6 +13,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 from hexapod_agent.fleet.pool import Pool
+from hexapod_agent.learning.player import Player
 from hexapod_agent.learning.run_checkpoint import checkpoint_path
 from hexapod_agent.learning.training import Trainer, TrainingDivergedError
 from hexapod_agent.nodes.agent_node import AgentNode
@@ -133,3 +134,26 @@ def test_either_goes_on_where_the_other_was_cut(on_graph, in_fleet, row, cut) ->
         pd.testing.assert_frame_equal(found, whole, check_exact=True)
         assert read_run(row(name).bag).metadata['resumed'] == '2'
         assert not checkpoint_path(row(name).bag).exists()
+
+
+def test_the_graph_goes_on_where_a_fleet_was_cut_amid_an_evaluation(
+    on_graph, in_fleet, row, monkeypatch
+) -> None:
+    begin = Player.begin_episode
+
+    def begin_first(self, episode: int) -> None:
+        if episode == 1:
+            raise TrainingDivergedError('cut in start 1')
+        begin(self, episode)
+
+    assert in_fleet(row('whole')) is None
+    with monkeypatch.context() as patch:
+        patch.setattr(Player, 'begin_episode', begin_first)
+        assert 'cut in start 1' in str(in_fleet(row('cut')))
+    assert on_graph(row('cut')) == ''
+    verify(row('cut').bag)
+    cut, whole = (read_run(row(name).bag) for name in ('cut', 'whole'))
+    for ours, theirs in ((cut.episodes, whole.episodes), (cut.evaluation, whole.evaluation)):
+        frames = [frame.drop(columns='stamp_ns') for frame in (ours, theirs)]
+        pd.testing.assert_frame_equal(*frames, check_exact=True)
+    assert cut.metadata['evaluation_return'] == whole.metadata['evaluation_return']
