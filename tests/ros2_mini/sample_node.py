@@ -4,12 +4,11 @@
 """A node with one of everything, for the system tests of the command line to look at."""
 
 import sys
-import time
 
 import rclpy
 from hexapod_interfaces.action import TrainRun
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor
-from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.action import ActionServer
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
@@ -48,9 +47,7 @@ class Sample(LifecycleNode):
             self,
             TrainRun,
             'train',
-            self.train,
-            goal_callback=self.accept,
-            cancel_callback=lambda goal: CancelResponse.ACCEPT,
+            lambda handle: TrainRun.Result(),
         )
         self.ticks = 0
         self.create_timer(0.05, self.tick)
@@ -71,22 +68,6 @@ class Sample(LifecycleNode):
         response.success = request.data
         response.message = f'flag {request.data}'
         return response
-
-    def accept(self, goal):
-        return GoalResponse.ACCEPT if goal.episodes else GoalResponse.REJECT
-
-    def train(self, handle):
-        for episode in range(handle.request.episodes):
-            if not rclpy.ok():
-                break
-            if handle.is_cancel_requested:
-                print('canceled', flush=True)
-                handle.canceled()
-                return TrainRun.Result()
-            handle.publish_feedback(TrainRun.Feedback(episode=episode, episode_return=1.5))
-            time.sleep(0.05)  # in a thread of its own; a rclpy Rate would not end with the node
-        handle.succeed()
-        return TrainRun.Result(episodes=handle.request.episodes, checkpoint='none')
 
     def on_configure(self, state):
         return TransitionCallbackReturn.SUCCESS

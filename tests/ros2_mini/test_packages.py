@@ -13,9 +13,10 @@ def test_executables(prefix, capsys):
     assert capsys.readouterr().out == f'demo talker\n{path}\n'
 
 
-def test_list_and_prefix(prefix, capsys):
-    assert main(['pkg', 'list']) == 0
-    assert 'demo' in capsys.readouterr().out.splitlines()
+def test_executables_of_all_packages_and_prefix(prefix, capsys):
+    prefix.add_executable('talker', 'exit 0')
+    assert main(['pkg', 'executables']) == 0
+    assert 'demo talker' in capsys.readouterr().out.splitlines()
     assert main(['pkg', 'prefix', 'demo']) == 0
     assert main(['pkg', 'prefix', '--share', 'demo']) == 0
     assert capsys.readouterr().out == f'{prefix.root}\n{prefix.share}\n'

@@ -133,22 +133,6 @@ class TestInterrupted:
         process.communicate(timeout=20)
         assert process.returncode == number
 
-    @SIGNALS
-    def test_goal_is_canceled(self, number, start, sample):
-        goal = '{episodes: 100000}'
-        process = start(
-            *('action', 'send_goal', '/train', 'hexapod_interfaces/action/TrainRun', goal),
-            '--feedback',
-        )
-        # The server has come to know the client's readers in their order: feedback is the last.
-        read_until(process, 'Feedback:')
-        process.send_signal(number)
-        told = process.communicate(timeout=20)[0]
-        assert 'Canceling goal...\n' in told
-        assert told.endswith('Goal canceled.\n')
-        assert process.returncode == number
-        assert sample.stdout.readline() == 'canceled\n'
-
 
 def test_rate_of_a_topic_is_right(sample, start):
     process = start('topic', 'hz', '/chatter')

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -19,6 +20,15 @@ pytestmark = pytest.mark.system
 ALWAYS = {'joint_states', 'cpg/state', 'line_offset', 'step_outcome'}
 STEPS = 40
 ACTION = 'hexapod_interfaces/action/TrainRun'
+WAITING_CLIENT = """
+import rclpy
+from hexapod_interfaces.action import TrainRun
+from rclpy.action import ActionClient
+
+rclpy.init()
+client = ActionClient(rclpy.create_node('waiting'), TrainRun, '/ghost/train_run')
+client.wait_for_server()
+"""
 MANAGER = (
     'ros2 run hexapod_doe manager_node --ros-args -p plan:=plan.csv -p episodes:=2 '
     '-p record_every:=2 -p config:={config} -p local_workers:={workers}'
@@ -111,7 +121,9 @@ def test_what_is_done_is_not_done_again(shell, plan: Path, bags: list[Path]) -> 
 
 def test_a_worker_that_never_appears_is_one_clear_error(shell, plan: Path) -> None:
     # Somebody else who waits for a worker is not one, nor is a worker that is there to play.
-    shell.start(f'ros2 action send_goal /ghost/train_run {ACTION} {{}}')
+    waiting = shell.directory / 'waiting.py'
+    waiting.write_text(WAITING_CLIENT)
+    shell.start(f'{sys.executable} {waiting}')
     player = 'ros2 launch hexapod_bringup worker.launch.xml namespace:=follow composed:=true'
     shell.start(f'{player} for_hire:=false')
     ended = shell.run(f'{manager(shell, 0)} -p worker_timeout:=7.0')

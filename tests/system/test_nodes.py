@@ -67,6 +67,6 @@ def test_a_worker_launches_in_one_process_or_in_four(shell, composed: str) -> No
     )
     expected = {f'/w/{name}' for name in NODES}
     shell.until(lambda: expected <= set(shell.run('ros2 node list').stdout.split()))
-    assert '/w/train_run' in shell.run('ros2 action list').stdout
+    assert '/w/train_run' in shell.run('ros2 node info /w/agent').stdout
     launch.send_signal(signal.SIGINT)
     assert launch.wait(15.0) == 0, shell.output()

@@ -4,7 +4,7 @@
 """The command line: which commands and verbs there are, and what their outcomes exit with.
 
 A verb is a module of `ros2_mini.verbs` with `add_arguments(parser)` and `main(args) -> int`. Only
-the one that is asked for gets imported, so that `ros2 pkg list` does not wait for rclpy.
+the one that is asked for gets imported, so that `ros2 pkg prefix` does not wait for rclpy.
 """
 
 import argparse
@@ -19,18 +19,9 @@ from hexapod_node.environment import EnvironmentVariableError
 from ros2_mini.errors import CommandError
 
 VERBS: dict[str, dict[str, str]] = {
-    'action': {
-        'info': 'Print information about an action',
-        'list': 'Output a list of action names',
-        'send_goal': 'Send an action goal',
-    },
     'bag': {
         'info': 'Print information about a bag to the screen',
         'play': 'Play back ROS data from a bag',
-    },
-    'interface': {
-        'list': 'List all interface types available',
-        'show': 'Output the interface definition',
     },
     'lifecycle': {
         'get': 'Get lifecycle state for one or more nodes',
@@ -50,13 +41,11 @@ VERBS: dict[str, dict[str, str]] = {
     },
     'pkg': {
         'executables': 'Output a list of package specific executables',
-        'list': 'Output a list of available packages',
         'prefix': 'Output the prefix path of a package',
     },
     'service': {
         'call': 'Call a service',
         'list': 'Output a list of available services',
-        'type': "Output a service's type",
     },
     'topic': {
         'echo': 'Output messages from a topic',
@@ -64,7 +53,6 @@ VERBS: dict[str, dict[str, str]] = {
         'info': 'Print information about a topic',
         'list': 'Output a list of available topics',
         'pub': 'Publish a message to a topic',
-        'type': "Print a topic's type",
     },
 }
 COMMANDS: dict[str, str] = {

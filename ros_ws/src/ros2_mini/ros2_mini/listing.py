@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""What the verbs `list` and `type` share: their options, and names printed with their types."""
+"""What the verbs `list` share: their options, and names printed with their types."""
 
 import argparse
 from collections.abc import Sequence
@@ -36,19 +36,6 @@ def print_names(found: NamesAndTypes, args: argparse.Namespace) -> None:
     """Print how many were found, or one name a line, with its types where asked."""
     if args.count:
         print(len(found))
-    else:
-        print_lines(found, args)
-
-
-def print_lines(found: NamesAndTypes, args: argparse.Namespace, indent: str = '') -> None:
-    """Print one name a line, with its types where asked."""
+        return
     for name, types in found:
-        print(f'{indent}{name} [{", ".join(types)}]' if args.show_types else f'{indent}{name}')
-
-
-def print_types(found: NamesAndTypes, name: str) -> int:
-    """Print the types of one name, a line each; return the exit status, 1 if it was not found."""
-    types = dict(found).get(name, [])
-    for line in types:
-        print(line)
-    return 0 if types else 1
+        print(f'{name} [{", ".join(types)}]' if args.show_types else name)
