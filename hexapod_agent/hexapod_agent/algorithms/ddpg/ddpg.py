@@ -13,7 +13,7 @@ import torch
 from torch import Tensor
 
 from hexapod_agent.algorithms.ddpg.action_value import ActionValue
-from hexapod_agent.algorithms.ddpg.config import ActorConfig, CriticConfig
+from hexapod_agent.algorithms.ddpg.config import DdpgConfig
 from hexapod_agent.algorithms.ddpg.networks import Actor, initial_bounds
 from hexapod_agent.algorithms.ddpg.optimizer import ClippedAdam
 from hexapod_agent.algorithms.ddpg.parameters import ParameterStack
@@ -32,15 +32,11 @@ class Ddpg:
     Attributes:
         actor_parameters: Online actor.
         critic_parameters: Online critic, the first of two.
-        actor_config: The policy's layers and training.
 
     Args:
         observation_size: Numbers of an observation.
         action_size: Numbers of an action.
-        actor: The policy and its training.
-        critic: The action value and its training.
-        batch_size: Transitions per update.
-        target_smoothing: Share of the online network that moves into its target per update.
+        config: Layers and training.
         generator: Draws the initial weights; None leaves them zero, for agents to be `put` in.
         agents: Independent agents that learn side by side.
         dtype: That of master weights, losses and optimisers.
@@ -52,10 +48,7 @@ class Ddpg:
         self,
         observation_size: int,
         action_size: int,
-        actor: ActorConfig,
-        critic: CriticConfig,
-        batch_size: int,
-        target_smoothing: float,
+        config: DdpgConfig,
         generator: torch.Generator | None,
         agents: int = 1,
         dtype: torch.dtype = torch.float32,
@@ -63,9 +56,10 @@ class Ddpg:
         device: torch.device | str = 'cpu',
     ) -> None:
         sizes = (observation_size, action_size)
-        self.actor_config = actor
-        self._target_smoothing = target_smoothing
-        self._smoothing: float | Tensor = target_smoothing
+        actor, critic, batch_size = config.actor, config.critic, config.ddpg.batch_size
+        self._actor_config = actor
+        self._target_smoothing = config.ddpg.target_smoothing
+        self._smoothing: float | Tensor = self._target_smoothing
         self._single = agents == 1
 
         self.actor_parameters = ParameterStack(
@@ -159,7 +153,7 @@ class Ddpg:
 
     def _update_actor(self, batch: Batch) -> tuple[Tensor, Tensor]:
         """Move mu(s) up the slope of Q(s, mu(s)) under the critic that was just updated."""
-        config = self.actor_config
+        config = self._actor_config
         action = self._actor.forward(batch.observation)
         critic = self._critics[0].online
         value = critic.forward(batch.observation, action)

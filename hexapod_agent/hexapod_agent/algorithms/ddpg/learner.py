@@ -53,9 +53,8 @@ class DdpgLearner(Learner):
         self._replay_generator = np.random.default_rng(replay)
         self._noise_generator = np.random.default_rng(noise)
         self.networks = Ddpg(
-            *sizes, config.actor, config.critic, ddpg.batch_size, ddpg.target_smoothing,
-            _torch_generator(init), compute_dtype=compute_dtype(problem.precision),
-        )  # fmt: skip
+            *sizes, config, _torch_generator(init), compute_dtype=compute_dtype(problem.precision)
+        )
         self.scale = RunningScale(sizes[0]) if ddpg.normalize_observations else None
         self._policy = policy_of(self.networks.actor_parameters, config, self.scale)
         self._replay = ReplayBuffer(ddpg.buffer_size, *sizes, ddpg.discount, ddpg.n_step)

@@ -13,7 +13,7 @@ import torch
 from torch import Tensor
 from torch.nn.functional import layer_norm
 
-from hexapod_agent.algorithms.ddpg.config import ActorConfig, CriticConfig
+from hexapod_agent.algorithms.ddpg.config import ActorConfig, CriticConfig, DdpgConfig
 from hexapod_agent.algorithms.policies import NORM_EPSILON
 from hexapod_agent.algorithms.replay import Batch
 
@@ -82,19 +82,18 @@ class ReferenceDdpg:
 
     def __init__(
         self,
-        actor: ActorConfig,
-        critic: CriticConfig,
-        target_smoothing: float,
+        config: DdpgConfig,
         networks: Mapping[str, Arrays],
         targets: Mapping[str, Arrays],
     ) -> None:
         """Begin with copies of such networks, which have had no update."""
-        self._actor, self._critic, self._smoothing = actor, critic, target_smoothing
+        self._actor, self._critic = config.actor, config.critic
+        self._smoothing = config.ddpg.target_smoothing
         self.networks = {name: _copied(arrays, learned=True) for name, arrays in networks.items()}
         self.targets = {name: _copied(arrays, learned=False) for name, arrays in targets.items()}
         self._critics = [name for name in self.networks if name != 'actor']
         self._steps = {
-            name: ClippedStep(arrays, actor if name == 'actor' else critic)
+            name: ClippedStep(arrays, config.actor if name == 'actor' else config.critic)
             for name, arrays in self.networks.items()
         }
 

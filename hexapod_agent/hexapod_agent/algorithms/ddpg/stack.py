@@ -31,8 +31,8 @@ class DdpgStack(LearnerStack[DdpgLearner]):
         self._device = torch.device(device)
         sizes = problem.observation_size, problem.action_size
         self._networks = Ddpg(
-            *sizes, config.actor, config.critic, ddpg.batch_size, ddpg.target_smoothing,
-            None, slots, compute_dtype=compute_dtype(problem.precision), device=self._device,
+            *sizes, config, None, slots,
+            compute_dtype=compute_dtype(problem.precision), device=self._device,
         )  # fmt: skip
         pinned = self._device.type != 'cpu'
         # A group of updates for the first slot, then one for the second, and so on.

@@ -6,47 +6,35 @@
 import numpy as np
 import pytest
 import torch
-from hexapod_agent.algorithms.ddpg.config import ActorConfig, CriticConfig
 from hexapod_agent.algorithms.ddpg.ddpg import Ddpg
 from hexapod_agent.algorithms.ddpg.parameters import ParameterStack
 from hexapod_agent.algorithms.ddpg.reference import ReferenceDdpg
 from hexapod_agent.algorithms.replay import Batch
+from hexapod_agent.specification.run_spec import RunSpec
 
 SIZES = (5, 3)
 BATCH = 16
 
 
-def critic_config(**changes) -> CriticConfig:
-    values = {
-        'hidden': (20, 10), 'merge': 'add', 'initial_value': 0.0, 'learning_rate': 1e-2, 'l2': 0.0,
-        'gradient_threshold': 1e9, 'layer_norm': False, 'twin': False,
+def config_of(batch: int = BATCH, rate: float = 1e-2, critic: dict | None = None, **actor):
+    """The learner's section with every switch off, but for those given."""
+    common = {
+        'hidden': [20, 10], 'learning_rate': rate, 'l2': 0.0, 'gradient_threshold': 1e6,
+        'layer_norm': False,
     }  # fmt: skip
-    return CriticConfig(**values | changes)
+    off = {'preactivation_penalty': 0.0, 'normalize_loss': False}
+    sections = {
+        'actor': common | off | actor,
+        'critic': common | {'initial_value': 0.0} | (critic or {}),
+        'ddpg': {'batch_size': batch, 'target_smoothing': 0.1},
+    }
+    return RunSpec.from_mapping({'learner': sections}, 'a test').learner
 
 
-def make(
-    agents: int = 1,
-    seed: int = 0,
-    batch: int = BATCH,
-    rate: float = 1e-2,
-    observations: int = SIZES[0],
-    critic: dict | None = None,
-    **actor,
-) -> Ddpg:
-    values = {
-        'hidden': (20, 10), 'learning_rate': rate, 'l2': 0.0, 'gradient_threshold': 1e9,
-        'preactivation_penalty': 0.0, 'normalize_loss': False, 'layer_norm': False,
-    }  # fmt: skip
+def make(agents: int = 1, seed: int = 0, observations: int = SIZES[0], **changes) -> Ddpg:
+    generator = torch.Generator().manual_seed(seed)
     return Ddpg(
-        observations,
-        SIZES[1],
-        ActorConfig(**values | actor),
-        critic_config(learning_rate=rate, **critic or {}),
-        batch,
-        target_smoothing=0.1,
-        generator=torch.Generator().manual_seed(seed),
-        agents=agents,
-        dtype=torch.float64,
+        observations, SIZES[1], config_of(**changes), generator, agents, dtype=torch.float64
     )
 
 
@@ -96,9 +84,8 @@ def test_updates_are_those_of_the_reference(switches):
     actor, critic = SWITCHES[switches]
     agent = make(critic=critic, **actor)
     batch = fill(agent).inner(0)
-    reference = ReferenceDdpg(
-        agent.actor_config, critic_config(**critic), 0.1, *(arrays_of(agent, t) for t in (0, 1))
-    )
+    config = config_of(critic=critic, **actor)
+    reference = ReferenceDdpg(config, *(arrays_of(agent, target) for target in (False, True)))
     assert ('twin_critic' in reference.networks) == critic.get('twin', False)
     for _ in range(3):
         seen = [each.item() for each in agent.update(batch)]
