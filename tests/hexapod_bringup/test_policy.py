@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The SROS 2 policy allows every endpoint that README.md lists of the nodes in it."""
+"""The SROS 2 policy allows every endpoint that docs/interfaces.md lists of the nodes in it."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ RIGHTS = {
 
 def listed(node: str) -> list[tuple[str, str]]:
     """Return kind and name of the endpoints in a node's table."""
-    readme = (ROOT / 'README.md').read_text(encoding='utf-8')
-    table = readme.partition(f'#### `{node}`: ')[2].partition('| parameter |')[0]
+    page = (ROOT / 'docs' / 'interfaces.md').read_text(encoding='utf-8')
+    table = page.partition(f'## `{node}`: ')[2].partition('| parameter |')[0]
     return re.findall(r'\| (publishes|subscribes|calls|serves|action) \| `([^`]+)`', table)
 
 

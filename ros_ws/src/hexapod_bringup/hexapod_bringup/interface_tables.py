@@ -1,10 +1,10 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Writes the tables of the README, and of bags/README.md, from running nodes and code's tables.
+"""Writes tables of the documentation from running nodes and from the code's tables.
 
-`python -m hexapod_bringup.interface_tables README.md` replaces what stands between the markers; a
-test holds both pages to it.
+`python -m hexapod_bringup.interface_tables` replaces what stands between the markers of its pages;
+a test holds them to it.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from hexapod_doe.nodes.player_node import PlayerNode
 from hexapod_doe.nodes.recorder_node import RecorderNode
 from hexapod_node.session import begin
 from hexapod_node.sync import LOCKSTEP, REALTIME
-from hexapod_sim.command_line import CommandLine, file
+from hexapod_sim.command_line import CommandLine
 from hexapod_sim.nodes.fake_driver_node import FakeDriverNode
 from hexapod_sim.nodes.sim_node import SimNode
 from hexapod_sim.sensor_table import CHANNELS, LETTERS
@@ -45,6 +45,12 @@ from rclpy.utilities import try_shutdown
 from hexapod_bringup.description_node import DescriptionNode
 
 SAMPLE_BAG = 'bags/sample'
+PAGES = {
+    'sensors': 'README.md',
+    'interfaces': 'docs/interfaces.md',
+    'metrics': 'bags/README.md',
+}
+"""Where each table stands, below the root of the repository."""
 _NODES = {
     'sim': (SimNode, 'hexapod_sim sim_node'),
     'cpg': (CpgNode, 'hexapod_cpg cpg_node'),
@@ -122,7 +128,7 @@ def node_tables(bag: Path) -> str:
             node = make()
             played = set(BagFile(bag).types) if name == 'player' else set()
             table = _node_table(node, played, further)
-            sections.append(f'#### `{name}`: `ros2 run {executable}`\n\n{table}')
+            sections.append(f'## `{name}`: `ros2 run {executable}`\n\n{table}')
             node.destroy_node()
         try_shutdown()
     return '\n\n'.join(sections)
@@ -217,14 +223,16 @@ def _markdown(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Write all tables into their pages."""
     parser = CommandLine(description=__doc__)
-    parser.add_argument('readme', type=file)
-    path = parser.parse_args(arguments).readme
-    text = replace(path.read_text(encoding='utf-8'), 'sensors', sensor_table())
-    nodes = node_tables(path.resolve().parent / SAMPLE_BAG)
-    path.write_text(replace(text, 'interfaces', nodes), encoding='utf-8')
-    bags = path.parent / 'bags' / path.name
-    text = replace(bags.read_text(encoding='utf-8'), 'metrics', metric_table())
-    bags.write_text(text, encoding='utf-8')
+    parser.add_argument('root', type=Path, nargs='?', default=Path(), help='of the repository')
+    root = parser.parse_args(arguments).root
+    tables = {
+        'sensors': sensor_table(),
+        'interfaces': node_tables(root.resolve() / SAMPLE_BAG),
+        'metrics': metric_table(),
+    }
+    for name, table in tables.items():
+        page = root / PAGES[name]
+        page.write_text(replace(page.read_text(encoding='utf-8'), name, table), encoding='utf-8')
 
 
 if __name__ == '__main__':

@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Declares a node's parameters from one table, which the README's tables are made of as well."""
+"""Declares a node's parameters from one table, which docs/interfaces.md is made of as well."""
 
 from __future__ import annotations
 
