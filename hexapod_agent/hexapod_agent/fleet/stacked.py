@@ -38,7 +38,8 @@ class StackedLearners:
         stack = ALGORITHMS[config.learner.algorithm].stack
         if stack is None:
             raise ConfigError(
-                f'learner.algorithm is {config.learner.algorithm}, which learns on the CPU alone'
+                f'learner.algorithm is {config.learner.algorithm}, which learns on the CPU alone, '
+                'expected --device cpu'
             )
         problem = replace(problem_of(config), observation_size=observation_size)
         self._stack = stack(config.learner, problem, num_slots, device)
