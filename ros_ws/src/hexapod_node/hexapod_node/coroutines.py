@@ -18,7 +18,6 @@ from concurrent import futures
 from typing import Any, TypeVar
 
 from rclpy.client import Client
-from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.service import Service
 from rclpy.task import Future
@@ -27,7 +26,6 @@ from hexapod_node.handlers import failed
 from hexapod_node.timers import call_later, call_soon
 from hexapod_node.upstream import answer_later
 
-STEADY = Clock(clock_type=ClockType.STEADY_TIME)
 _POLL_S = 0.005
 Result = TypeVar('Result')
 Handler = Callable[[Any, Any], Coroutine[Future, None, Any]]

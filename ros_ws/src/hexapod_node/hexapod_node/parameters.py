@@ -25,7 +25,8 @@ from rcl_interfaces.msg import Parameter as ParameterMessage
 from rclpy.node import Node
 from rclpy.parameter import Parameter as RclpyParameter
 
-Value = bool | int | float | str | list[str]
+Scalar = bool | int | float | str
+Value = Scalar | list[str]
 Config = TypeVar('Config')
 # Nodes that take whole numbers for real ones.
 _widening: WeakSet[Node] = WeakSet()
@@ -171,7 +172,7 @@ def config_table(default: Any, prefix: str) -> tuple[Parameter, ...]:
     table = []
     for field in fields(config):
         value = getattr(default, field.name)
-        if isinstance(value, Value):
+        if isinstance(value, Scalar):
             text, unit = _split_unit(docs.get(field.name, ''))
             name = f'{prefix}.{field.name}'
             limits = _limits(hints[field.name])
