@@ -20,8 +20,8 @@ from pathlib import Path
 
 import torch
 from hexapod_agent.algorithms.replay import Batch
+from hexapod_agent.learning.numerics import set_numerics
 from hexapod_agent.learning.training import Trainer
-from hexapod_agent.specification.observation import ObservationSpec
 from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_cpg.mapping import ACTION_SIZE
 from hexapod_doe.campaigns.folder import read_progress
@@ -37,7 +37,7 @@ DOMAIN = '97'
 PLAN = 'ros2 run hexapod_doe plan --design eighth --replicates 1 --seed 1 --out {plan}'
 MANAGER = (
     'ros2 run hexapod_doe manager_node --ros-args -p plan:={plan} -p episodes:={episodes} '
-    '-p record_every:=0 -p local_workers:={workers}'
+    '-p record_every:=0 -p local_workers:={workers} -p set:=[training.evaluation=0]'
 )
 
 
@@ -69,16 +69,16 @@ def episodes_per_second(directory: Path, workers: int) -> float:
 
 def learn() -> None:
     """Print how many updates a second one learner makes."""
-    spec, config = ObservationSpec('ABCDE'), RunSpec.load()
-    agent = Trainer(spec, config, 1).agent
-    batch = Batch.empty(
-        1, config.learner.ddpg.batch_size, spec.size, ACTION_SIZE, torch.float32
-    ).inner(0)
+    config = RunSpec.load().observing('ABCDE')
+    set_numerics(config.training.precision)
+    networks = Trainer(config, 1).learner.networks
+    sizes = (config.learner.ddpg.batch_size, config.observed.size, ACTION_SIZE)
+    batch = Batch.empty(1, *sizes, torch.float32).inner(0)
     for tensor in vars(batch).values():
         tensor.uniform_(-1.0, 1.0)
     updates, began = 0, time.perf_counter()
     while time.perf_counter() - began < LEARN_S:
-        agent.update(batch)
+        networks.update(batch)
         updates += 1
     print(updates / LEARN_S)
 
