@@ -15,7 +15,7 @@ from hexapod_node.actions import ActionClient, CoroutineActionServer
 from hexapod_node.coroutines import create_coroutine_service
 from hexapod_node.diagnostics import Diagnostics
 from hexapod_node.handlers import failures
-from hexapod_node.message_info import NumberedCallback
+from hexapod_node.newest import NumberedCallback
 from hexapod_node.node import Node
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import GetParameters, SetParameters, SetParametersAtomically

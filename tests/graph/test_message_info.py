@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 import pytest
 import rclpy
-from hexapod_node.message_info import NumberedCallback
+from hexapod_node.newest import NumberedCallback
 from rclpy.context import Context
 from rclpy.executors import Executor, SingleThreadedExecutor
 from rclpy.experimental.events_executor import EventsExecutor

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from hexapod_node.schedule import Due, Schedule
+from hexapod_node.ticker import Due, Schedule
 from hypothesis import given
 from hypothesis import strategies as st
 

@@ -19,7 +19,7 @@ from hexapod_doe.campaigns.campaign_lock import row_lock
 from hexapod_doe.campaigns.dashboard import Dashboard
 from hexapod_doe.campaigns.failures import FailureLog, read_failures
 from hexapod_doe.campaigns.fleet_row import FleetRow
-from hexapod_doe.campaigns.page_writer import PageWriter
+from hexapod_doe.campaigns.page import PageWriter
 from hexapod_doe.campaigns.row import Row
 from hexapod_doe.errors import CampaignError
 

@@ -37,7 +37,7 @@ from hexapod_doe.campaigns.dashboard import Dashboard
 from hexapod_doe.campaigns.failures import FailureLog
 from hexapod_doe.campaigns.forecast import forecast
 from hexapod_doe.campaigns.local_workers import LocalWorkers
-from hexapod_doe.campaigns.page_writer import PageWriter
+from hexapod_doe.campaigns.page import PageWriter
 from hexapod_doe.campaigns.plan_copy import keep_config
 from hexapod_doe.campaigns.row import RUNS_FOLDER, Row
 from hexapod_doe.cores import usable_cores

@@ -24,8 +24,7 @@ from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Trigger
 
 from hexapod_doe.bags.bag_file import BagFile
-from hexapod_doe.bags.pauses import PauseTeller
-from hexapod_doe.bags.playback import Frame, Playback
+from hexapod_doe.bags.playback import Frame, PauseTeller, Playback
 from hexapod_doe.bags.selection import Selection, select
 from hexapod_doe.errors import BagError
 

@@ -6,8 +6,7 @@ from html.parser import HTMLParser
 
 import pytest
 from hexapod_doe.campaigns.folder import read_progress
-from hexapod_doe.campaigns.page import render, write_page
-from hexapod_doe.campaigns.page_writer import PageWriter
+from hexapod_doe.campaigns.page import PageWriter, render, write_page
 from hexapod_doe.campaigns.progress import Progress, Run, State
 
 VOID = ('meta', 'link')

@@ -9,7 +9,7 @@ from io import StringIO
 
 from hexapod_agent.contract.finding import Finding
 from hexapod_agent.contract.report import SensorReport, TopicRow
-from hexapod_doe.contract.sensor_table import show
+from hexapod_doe.nodes.check_sensors_node import show
 from rich.console import Console
 
 FAULT = Finding(

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -12,12 +13,38 @@ from typing import Any
 
 from rclpy.node import Node
 
-from hexapod_node.message_info import NumberedCallback
 from hexapod_node.qos import DRIVER
 from hexapod_node.sample_gate import SampleGate
 from hexapod_node.stamps import to_nanoseconds
 
 _THROTTLE_S = 2.0
+
+
+class NumberedCallback:
+    """A subscription's callback for message and publication sequence number.
+
+    rclpy tells by a callback's signature whether it wants the message's info. EventsExecutor of
+    rclpy 7.1 then passes message and info as one tuple, where the other executors pass two
+    arguments; `tests/graph/test_message_info.py` says when that is over.
+    """
+
+    def __init__(self, callback: Callable[[Any, int | None], None]) -> None:
+        """Wrap.
+
+        Args:
+            callback: takes the message and its number, None where the middleware has none.
+        """
+        self._callback = callback
+        parameters = [
+            inspect.Parameter(name, inspect.Parameter.POSITIONAL_ONLY)
+            for name in ('message', 'info')
+        ]
+        self.__signature__ = inspect.Signature(parameters)
+
+    def __call__(self, *given: Any) -> None:
+        """Take what an executor passes."""
+        message, info = given if len(given) == 2 else given[0]
+        self._callback(message, info.get('publication_sequence_number'))
 
 
 @dataclass(frozen=True)

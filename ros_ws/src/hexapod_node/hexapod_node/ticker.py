@@ -9,17 +9,97 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from rclpy.clock import JumpThreshold
+from rclpy.duration import Duration
 from rclpy.node import Node
 
-from hexapod_node.schedule import Schedule
-from hexapod_node.simulated_time import SimulatedTime
 from hexapod_node.tick_meter import TickMeter
-from hexapod_node.timers import Timer, call_every
+from hexapod_node.timers import Timer, call_every, call_soon
 from hexapod_node.upstream import RCLError
 
+_ANY_MOVE = JumpThreshold(
+    min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1)
+)
 _SECOND_NS = 1_000_000_000
 _PHASE_TOLERANCE_NS = 1_000_000
 _PHASE_TRIES = 40
+
+
+@dataclass(frozen=True)
+class Due:
+    """The first tick that was not served yet.
+
+    Attributes:
+        late_ns: How long ago it was due.
+        missed: Further ticks that were due since.
+    """
+
+    late_ns: int
+    missed: int
+
+
+class Schedule:
+    """Ticks on a grid that never drifts, whenever they are served."""
+
+    def __init__(self, period_ns: int, first_ns: int | None = None) -> None:
+        """Begin before the first tick.
+
+        Args:
+            period_ns: Time between two ticks.
+            first_ns: When the first one is due; None for whenever it is served.
+        """
+        self.period_ns = period_ns
+        self._next_ns = first_ns
+
+    def serve(self, now_ns: int) -> Due | None:
+        """Return what is due now and expect the tick after it; None for nothing.
+
+        A clock that jumped back by more than a period begins a new grid.
+        """
+        due_ns = self._next_ns
+        if due_ns is None or now_ns < due_ns - 2 * self.period_ns:
+            due_ns = now_ns
+        if now_ns < due_ns:
+            return None
+        late_ns = now_ns - due_ns
+        missed = late_ns // self.period_ns
+        self._next_ns = due_ns + (missed + 1) * self.period_ns
+        return Due(late_ns, missed)
+
+
+class SimulatedTime:
+    """The steps of /clock, as a node with `use_sim_time` hears them.
+
+    Steps that come while the last one has yet to be served are one.
+    """
+
+    def __init__(self, node: Node, callback: Callable[[], object]) -> None:
+        """Begin to listen.
+
+        Args:
+            node: whose clock it is, and whose executor calls.
+            callback: called after each step.
+        """
+        self._node = node
+        self._callback = callback
+        self._posted = self._cancelled = False
+        self._jumps = node.get_clock().create_jump_callback(_ANY_MOVE, post_callback=self._on_jump)
+
+    def cancel(self) -> None:
+        """Listen no more."""
+        self._cancelled = True
+        self._jumps.unregister()
+
+    def _on_jump(self, _: object) -> None:
+        """Leave the middleware's call, which every clock of the process waits for."""
+        if not self._posted:
+            self._posted = True
+            call_soon(self._node, self._serve)
+
+    def _serve(self) -> None:
+        self._posted = False
+        if not self._cancelled:
+            self._callback()
 
 
 @dataclass(frozen=True)

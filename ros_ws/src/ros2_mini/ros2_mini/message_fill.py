@@ -7,8 +7,10 @@ The original converts what it can and lets the rest pass; here a value that does
 is an error that names the field, because rclpy itself checks nothing by default.
 """
 
+import argparse
 import array
 import importlib
+import sys
 from collections.abc import Callable
 from functools import partial
 from typing import Any, TypeAlias
@@ -178,3 +180,19 @@ def _convert_integer(value: Any, expected: str, least: int, end: int, path: str)
     if not is_number or value != int(value) or not least <= value < end:
         raise _FieldError(path, value, f'{expected}, {least} to {end - 1}')
     return int(value)
+
+
+def add_values_argument(parser: argparse.ArgumentParser, name: str, text: str) -> None:
+    """Declare the argument `name` with the help `text`, and its alternative `--stdin`."""
+    source = parser.add_mutually_exclusive_group()
+    source.add_argument('values', metavar=name, nargs='?', default='{}', help=text)
+    source.add_argument('--stdin', action='store_true', help=f'Read {name} from standard input')
+
+
+def given_values(args: argparse.Namespace) -> dict[str, Any]:
+    """Return the fields that the command line or standard input gives.
+
+    Raises:
+        CommandError: If they are no YAML, or no mapping of field names.
+    """
+    return read_values(sys.stdin.read() if args.stdin else args.values)

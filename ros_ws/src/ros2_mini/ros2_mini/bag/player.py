@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 
 import rclpy
-from hexapod_doe.bags.pauses import PauseTeller
-from hexapod_doe.bags.playback import Playback
+from hexapod_doe.bags.playback import PauseTeller, Playback
 from hexapod_doe.bags.selection import Selection
 from hexapod_node.raw_topics import message_class, replay_qos
 from rclpy.duration import Duration

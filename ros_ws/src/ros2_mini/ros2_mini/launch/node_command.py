@@ -5,14 +5,14 @@
 
 import os
 import shlex
+from collections.abc import Callable
 from pathlib import Path
 
 from ros2_mini.errors import CommandError
 from ros2_mini.launch.document import Element
 from ros2_mini.launch.parameters import parameter_arguments
 from ros2_mini.launch.plan import ProcessSpec
-from ros2_mini.launch.scope import Scope
-from ros2_mini.launch.words import words
+from ros2_mini.launch.scope import Scope, template_of
 from ros2_mini.packages import executable_path
 
 OUTPUTS = ('screen', 'log', 'both')
@@ -109,3 +109,37 @@ def _shutdown_on_exit(scope: Scope, element: Element) -> bool:
     if on_exit not in (None, 'shutdown'):
         raise CommandError(f"{element.where} has on_exit '{on_exit}'; supported: shutdown")
     return on_exit == 'shutdown'
+
+
+def words(scope: Scope, element: Element, name: str) -> list[str]:
+    """Return the words of an attribute.
+
+    Literal text is split as a shell splits it. What a substitution stands for is never split: it
+    joins the text that touches it, so `--file $(var path)` is two words whatever the path.
+    """
+    if name not in element.attributes:
+        return []
+    result: list[str] = []
+    joins = False  # whether the next piece continues the last word
+    for piece in template_of(element, name):
+        if isinstance(piece, str):
+            tokens = _split(piece, lambda: f'{element.where} {name}')
+            _append(result, tokens, joins and not piece[0].isspace())
+            joins = bool(tokens) and not piece[-1].isspace()
+        else:
+            _append(result, [scope.evaluate(element, (piece,))], joins)
+            joins = True
+    return result
+
+
+def _append(result: list[str], tokens: list[str], joins: bool) -> None:
+    if joins and tokens:
+        result[-1] += tokens.pop(0)
+    result += tokens
+
+
+def _split(text: str, where: Callable[[], str]) -> list[str]:
+    try:
+        return shlex.split(text)
+    except ValueError as error:
+        raise CommandError(f"{where()}: '{text}': {error}") from error

@@ -6,11 +6,10 @@
 import argparse
 import time
 
-from ros2_mini import values
 from ros2_mini.calls import result_of
 from ros2_mini.errors import CommandError
 from ros2_mini.interfaces import load_type
-from ros2_mini.message_fill import fill_message
+from ros2_mini.message_fill import add_values_argument, fill_message, given_values
 from ros2_mini.node_context import open_node
 
 
@@ -18,7 +17,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of `ros2 service call`."""
     parser.add_argument('service_name', help="Name of the ROS service (e.g. '/set_flag')")
     parser.add_argument('service_type', help="Type of the ROS service (e.g. 'std_srvs/srv/Empty')")
-    values.add_arguments(
+    add_values_argument(
         parser,
         'values',
         "Values to fill the service request with in YAML format (e.g. '{a: 1, b: 2}')",
@@ -34,7 +33,7 @@ def main(args: argparse.Namespace) -> int:
         raise CommandError(f'rate must be greater than zero, but is {args.rate}')
     service_type = load_type(args.service_type, 'srv')
     request = service_type.Request()
-    fill_message(request, values.given(args))
+    fill_message(request, given_values(args))
     with open_node() as node:
         client = node.create_client(service_type, args.service_name)
         if not client.service_is_ready():

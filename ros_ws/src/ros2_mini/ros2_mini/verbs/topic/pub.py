@@ -11,11 +11,16 @@ import rclpy
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 
-from ros2_mini import qos, values
+from ros2_mini import qos
 from ros2_mini.discovery import wait_for
 from ros2_mini.errors import CommandError
 from ros2_mini.interfaces import load_type
-from ros2_mini.message_fill import StampSetter, fill_message
+from ros2_mini.message_fill import (
+    StampSetter,
+    add_values_argument,
+    fill_message,
+    given_values,
+)
 from ros2_mini.node_context import open_node
 
 
@@ -23,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments of `ros2 topic pub`."""
     parser.add_argument('topic_name', help="Name of the ROS topic (e.g. '/chatter')")
     parser.add_argument('message_type', help="Type of the ROS message (e.g. 'std_msgs/String')")
-    values.add_arguments(
+    add_values_argument(
         parser,
         'values',
         "Values to fill the message with in YAML format (e.g. 'data: Hello World')",
@@ -66,7 +71,7 @@ def _positive(text: str) -> float:
 def main(args: argparse.Namespace) -> int:
     """Publish until interrupted, or as often as asked."""
     message = load_type(args.message_type, 'msg')()
-    stamps = fill_message(message, values.given(args))
+    stamps = fill_message(message, given_values(args))
     with open_node(args.node_name, use_sim_time=args.use_sim_time) as node:
         publisher = node.create_publisher(type(message), args.topic_name, qos.profile(args))
         _wait_for_subscriptions(publisher, args)
