@@ -20,12 +20,12 @@ def python(program: str) -> 'subprocess.CompletedProcess[str]':
 TIMERS = """
 import time
 import rclpy
-from hexapod_node.coroutines import STEADY
+from rclpy.clock import Clock, ClockType
 from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.node import Node
 
 rclpy.init()
-node, ticks = Node('storm'), []
+node, ticks, STEADY = Node('storm'), [], Clock(clock_type=ClockType.STEADY_TIME)
 node.create_timer(0.05, lambda: ticks.append(1), clock=STEADY)
 
 def replace(period):
