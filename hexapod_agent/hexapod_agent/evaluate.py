@@ -32,7 +32,8 @@ from hexapod_agent.environment.evaluation import (
     run_episode,
     summarize,
 )
-from hexapod_agent.specification.run_spec import ConfigError, RunSpec, add_spec_options
+from hexapod_agent.specification.run_spec import ConfigError, RunSpec
+from hexapod_agent.specification.spec_text import add_spec_options
 
 _ROWS = (
     ('final average reward', 'final_average_reward', '.1f'),

@@ -24,7 +24,8 @@ from hexapod_agent.learning.progress import Report, episode_report
 from hexapod_agent.learning.run_checkpoint import different, listed
 from hexapod_agent.learning.summary import EpisodeSummary
 from hexapod_agent.learning.training import Trainer, TrainingDivergedError
-from hexapod_agent.specification.run_spec import ConfigError, RunSpec, add_spec_options
+from hexapod_agent.specification.run_spec import ConfigError, RunSpec
+from hexapod_agent.specification.spec_text import add_spec_options
 
 CHECKPOINT = 'checkpoint.pt'  # with the replay buffer: to resume
 AGENT = 'agent.pt'  # the actor alone: to evaluate and to keep

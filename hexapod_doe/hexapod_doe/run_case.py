@@ -15,7 +15,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from hexapod_agent.specification.run_spec import add_spec_options
+from hexapod_agent.specification.spec_text import add_spec_options
 from hexapod_sim.command_line import CommandLine, file, folder, number, one_line, whole
 
 from hexapod_doe.campaigns.campaign_lock import campaign_lock, row_lock

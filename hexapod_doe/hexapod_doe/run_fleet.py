@@ -22,7 +22,8 @@ from hexapod_agent.fleet.learners import Learners, SeparateLearners
 from hexapod_agent.fleet.pool import Pool
 from hexapod_agent.fleet.robots import Robots
 from hexapod_agent.fleet.stacked import StackedLearners
-from hexapod_agent.specification.run_spec import RunSpec, add_spec_options
+from hexapod_agent.specification.run_spec import RunSpec
+from hexapod_agent.specification.spec_text import add_spec_options
 from hexapod_sim.command_line import CommandLine, file, folder, one_line, whole
 
 from hexapod_doe.campaigns.campaign import Campaign

@@ -71,6 +71,16 @@ class LearnerConfig:
             ValueError: They are such; the text names their keys.
         """
 
+    def check_training(self, episode_steps: int) -> None:
+        """Refuse values by which nothing would be learned.
+
+        Args:
+            episode_steps: Actions of the longest episode.
+
+        Raises:
+            ValueError: They are such; the text names their keys.
+        """
+
 
 class Learner(Protocol):
     """An agent that acts, remembers what that earned, and learns from it.

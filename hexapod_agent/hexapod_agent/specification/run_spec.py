@@ -15,7 +15,6 @@ from typing import Any, TypeVar
 
 import yaml
 from hexapod_sim.article import ARTICLE, article
-from hexapod_sim.command_line import CommandLine, file
 from hexapod_sim.quality import Quality
 from hexapod_sim.quality import check as check_qualities
 from hexapod_sim.sensor_table import LETTERS, SENSORS
@@ -144,11 +143,12 @@ class RunSpec:
         Raises:
             ConfigError: A text is not of this form, a key is unknown, or a value is not allowed.
         """
-        spec = self
+        spec, sources = self, []
         for setting in settings:
-            key, value = parsed_setting(setting)
-            spec = spec.with_value(key, value, f'--set {setting}')
-        return spec
+            sources.append(f'--set {setting}')
+            changes = nest(*parsed_setting(setting))
+            spec = _built(spec.to_mapping(), changes, sources[-1])
+        return _checked(spec, ' '.join(sources)) if sources else self  # together, in any order
 
     def with_value(self, key: str, value: Any, source: str) -> 'RunSpec':
         """Return a specification with one value changed, by its dotted key.
@@ -201,6 +201,11 @@ def _build(base: Mapping[str, Any], changes: Any, source: str) -> RunSpec:
     Raises:
         ConfigError: See `RunSpec.from_mapping`.
     """
+    return _checked(_built(base, changes, source), source)
+
+
+def _built(base: Mapping[str, Any], changes: Any, source: str) -> RunSpec:
+    """Validate each value of a base with changes."""
     if not isinstance(changes, Mapping):
         raise ConfigError(f'{source}: expected sections with keys, as article.yaml has them')
     changes = _modern(changes)
@@ -213,7 +218,11 @@ def _build(base: Mapping[str, Any], changes: Any, source: str) -> RunSpec:
     learner = _validated(
         ALGORITHMS[values['learner']['algorithm']].config, values['learner'], source, 'learner.'
     )
-    spec = _validated(RunSpec, values | {'learner': learner}, source)
+    return _validated(RunSpec, values | {'learner': learner}, source)
+
+
+def _checked(spec: RunSpec, source: str) -> RunSpec:
+    """Return a specification whose values go with one another."""
     try:
         spec.learner.check()
         check_qualities(spec.sensors)
@@ -280,21 +289,3 @@ def _check_keys(base: Mapping[str, Any], changes: Any, source: str, prefix: str)
             raise ConfigError(f'{source}: unknown key {unknown}, expected one of {known}')
         if isinstance(base[key], Mapping):
             _check_keys(base[key], value, source, f'{prefix}{key}.')
-
-
-def add_spec_options(parser: CommandLine) -> None:
-    """Give a command line the options that say what a run is, for `RunSpec.load`."""
-    parser.add_argument(
-        '--config',
-        '--hyperparameters',  # its name before the sensors were in it
-        type=file,
-        metavar='FILE',
-        help='YAML file of changes to article.yaml',
-    )
-    parser.add_argument(
-        '--set',
-        action='append',
-        default=[],
-        metavar='KEY=VALUE',
-        help='one further change, such as learner.actor.learning_rate=2e-4; may be repeated',
-    )

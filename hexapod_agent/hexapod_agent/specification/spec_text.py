@@ -12,6 +12,7 @@ from typing import Any
 
 import yaml
 from hexapod_sim.article import article
+from hexapod_sim.command_line import CommandLine, file
 
 from hexapod_agent.specification.nested import merged, nest
 
@@ -38,12 +39,12 @@ def parsed(text: str, source: str, aliases: bool = True) -> Any:
         aliases: whether a value may refer to another one.
 
     Raises:
-        ConfigError: It is not YAML, or has an alias and must not.
+        ConfigError: It is not YAML, has a key twice, or has an alias and must not.
     """
     try:
         if not aliases and any(isinstance(event, yaml.AliasEvent) for event in yaml.parse(text)):
             raise ConfigError(f"{source}: an alias ('*'), expected every value written out")
-        return yaml.safe_load(text)
+        return yaml.load(text, _WithoutDoubles)
     except ConfigError:
         raise
     # A day that there is not, a number of thousands of digits and a bracket within a thousand
@@ -75,14 +76,14 @@ def read_changes(path: str | Path) -> dict[str, Any]:
     Raises:
         ConfigError: The file is missing, is not YAML, or has no sections with keys.
     """
-    file = Path(path).expanduser()
-    if not file.is_file():
+    named = Path(path).expanduser()
+    if not named.is_file():
         raise ConfigError(
             f'config file {str(path)!r} not found, expected a YAML file with sections of '
             f'{", ".join(article())}'
         )
     try:
-        text = file.read_text(encoding='utf-8')
+        text = named.read_text(encoding='utf-8')
     except UnicodeDecodeError as error:
         raise ConfigError(f'{path}: not YAML: not UTF-8 text') from error
     return _sections(parsed(text, str(path)), str(path))
@@ -110,6 +111,36 @@ def changes_text(path: str | Path | None, settings: Iterable[str]) -> str:
     for setting in settings:
         changes = merged(changes, nest(*parsed_setting(setting)))
     return yaml.dump(changes, Dumper=_WithoutAliases, sort_keys=False)
+
+
+def add_spec_options(parser: CommandLine) -> None:
+    """Give a command line the options that say what a run is, for `RunSpec.load`."""
+    parser.add_argument(
+        '--config',
+        '--hyperparameters',  # its name before the sensors were in it
+        type=file,
+        metavar='FILE',
+        help='YAML file of changes to article.yaml',
+    )
+    parser.add_argument(
+        '--set',
+        action='append',
+        default=[],
+        metavar='KEY=VALUE',
+        help='one further change, such as learner.actor.learning_rate=2e-4; may be repeated',
+    )
+
+
+class _WithoutDoubles(yaml.SafeLoader):
+    """Refuses a key that a section has twice, of which YAML would lose the first."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        keys = [key.value for key, _ in node.value if isinstance(key, yaml.ScalarNode)]
+        for twice in (key for key in keys if keys.count(key) > 1):
+            raise yaml.constructor.ConstructorError(
+                None, None, f'key {quoted(twice)} twice in one section', node.start_mark
+            )
+        return super().construct_mapping(node, deep)
 
 
 class _WithoutAliases(yaml.SafeDumper):

@@ -6,7 +6,7 @@
 import argparse
 from pathlib import Path
 
-from hexapod_agent.specification.run_spec import add_spec_options
+from hexapod_agent.specification.spec_text import add_spec_options
 from hexapod_sim.command_line import MOST_SEED, CommandLine, file, number, path, whole
 
 from hexapod_doe.designs.design import FRACTIONS

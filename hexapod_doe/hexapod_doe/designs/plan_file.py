@@ -100,13 +100,19 @@ def _check(plan: Plan, path: Path) -> None:
         if row['observations'] != expected:
             raise PlanError(
                 f'{where}: observations {row["observations"]!r}, expected {expected!r} '
-                'by the factor columns'
+                f'by the factor columns{_without_settings(plan, path)}'
             )
         if not 0 <= row['seed'] < _SEED_LIMIT:
             raise PlanError(f'{where}: seed {row["seed"]}, expected 0 to 2^64 - 1')
     _check_keys(rows, path)
     if (rows.groupby('case')[list(factors)].nunique() > 1).any(axis=None):
         raise PlanError(f'{path}: a case has rows of different levels, expected one set per case')
+
+
+def _without_settings(plan: Plan, path: Path) -> str:
+    """Return for a message that the file which names factors is missing; empty if it is not."""
+    name = path.with_suffix('.json').name
+    return '' if plan.settings else f'; {name}, which names other factors, is not beside it'
 
 
 def _check_keys(rows: pd.DataFrame, path: Path) -> None:

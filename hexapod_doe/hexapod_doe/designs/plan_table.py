@@ -102,6 +102,15 @@ def _kept_blocks(levels: np.ndarray, factors: str, words: Sequence[str]) -> tupl
     return tuple(words)
 
 
+def _check_training(treatments: Treatments, case: Sequence[float]) -> None:
+    """Refuse a case whose runs are none, or would learn nothing."""
+    spec = treatments.spec(case)
+    try:
+        spec.learner.check_training(spec.task.time_limit_steps)
+    except ValueError as error:
+        raise ValueError(f'case {treatments.text(case)}: {error}') from error
+
+
 def _plan(levels: np.ndarray, settings: PlanSettings, before: pd.DataFrame | None = None) -> Plan:
     """Return the plan of any cases, numbered on and seeded apart from the rows before them."""
     if settings.replicates < 1:
@@ -109,7 +118,7 @@ def _plan(levels: np.ndarray, settings: PlanSettings, before: pd.DataFrame | Non
     factors, treatments = settings.treatments.letters, settings.treatments
     if not treatments.default:
         for case in levels:  # every one of them can be run
-            treatments.spec(case)
+            _check_training(treatments, case)
     first_row = 1 if before is None else 1 + int(before['StdOrder'].max())
     first_case = 1 if before is None else 1 + int(before['case'].max())
     order_rng, seed_rng = map(

@@ -117,6 +117,7 @@ def test_mapping_round_trip():
         ('learner: {ddpg: 3}', 'ddpg is 3, expected keys'),
         ('- 1', 'expected sections with keys'),
         ('a: [', 'not YAML'),
+        ('task: {line_y: 1}\ntask: {yaw_share: 0}', "key 'task' twice in one section"),
     ],
 )
 def test_wrong_files_are_refused(write, text, message):
@@ -189,6 +190,13 @@ def test_single_values_are_set_by_dotted_key():
     assert (spec.task.closeness_weight, spec.letters, spec.cpg.reading) == (2.0, 'C', 'D2')
     assert spec.value('learner.actor.learning_rate') == 1e-4
     assert spec.value('critic.merge') == 'add'  # as keys were before
+
+
+def test_values_that_go_together_may_be_set_in_any_order():
+    settings = ['learner.ddpg.update_ratio=0.2', 'learner.ddpg.update_every=5']
+    assert RunSpec.load(None, settings) == RunSpec.load(None, reversed(settings))
+    with pytest.raises(ConfigError, match=r'--set .*=7 --set .*=0.2: .* a multiple of 1/7'):
+        RunSpec.load(None, ['learner.ddpg.update_every=7', settings[0]])
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from hexapod_doe.campaigns.folder import read_progress
 from hexapod_doe.campaigns.overview import overview
 from hexapod_doe.campaigns.page import render
 from hexapod_doe.campaigns.row import read_rows
-from hexapod_doe.designs.plan_file import read_plan
+from hexapod_doe.designs.plan_file import PlanError, read_plan
 from rich.console import Console
 
 from hexapod_doe import plan
@@ -166,6 +166,22 @@ OTHER = '\n- {name: b, key: task.height_weight, low: 0, high: 1}'
             '\n- {name: c, key: task.yaw_share, low: 0, high: 1}',
             'B b 0.05, C c 0: learner.ddpg.update_ratio is 0.05, expected a multiple of 1/10',
         ),
+        (  # runs that would be refused when they begin
+            '- {name: a, key: task.time_limit_steps, low: 20, high: 30}'
+            + OTHER
+            + '\n- {name: c, key: task.yaw_share, low: 0, high: 1}',
+            'learner.ddpg.update_every is 24, expected at most',
+        ),
+        (
+            '- {name: a, key: learner.ddpg.buffer_size, low: 128, high: 9000}'
+            + OTHER
+            + '\n- {name: c, key: task.yaw_share, low: 0, high: 1}',
+            'learner.ddpg.buffer_size is 128, expected more than',
+        ),
+        (
+            '- {name: a, name: c, key: task.yaw_share, low: 0, high: 1}' + OTHER,
+            "not YAML: key 'name' twice in one section",
+        ),
     ],
 )
 def test_a_malformed_file_gives_one_line_and_no_plan(tmp_path, capsys, text, message):
@@ -176,6 +192,16 @@ def test_a_malformed_file_gives_one_line_and_no_plan(tmp_path, capsys, text, mes
     assert message in error
     assert error.count('\n') == 1
     assert not (tmp_path / 'new').exists()
+
+
+def test_a_plan_without_its_factors_is_refused_and_they_are_named(tmp_path):
+    sensor = '- {name: a, key: task.yaw_share, low: 0, high: 1}\n'
+    out = written(
+        tmp_path, sensor + '- {name: s, key: observations.F, low: off, high: on}' + OTHER
+    )
+    out.with_suffix('.json').unlink()
+    with pytest.raises(PlanError, match=r'by the factor columns; plan.json, which names other'):
+        read_plan(out)
 
 
 def test_the_example_plans_eight_factors_in_sixteen_rows(tmp_path, capsys):

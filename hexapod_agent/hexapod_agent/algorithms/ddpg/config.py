@@ -134,3 +134,17 @@ class DdpgConfig(LearnerConfig):
     def check(self) -> None:
         """Refuse a group of updates that is no whole number."""
         _ = self.ddpg.group_size
+
+    def check_training(self, episode_steps: int) -> None:
+        """Refuse groups of updates and batches that no run of such episodes comes to."""
+        ddpg = self.ddpg
+        if ddpg.update_every > episode_steps:
+            raise ValueError(
+                f'learner.ddpg.update_every is {ddpg.update_every}, expected at most '
+                f'task.time_limit_steps, {episode_steps}: nothing would be learned'
+            )
+        if ddpg.buffer_size <= ddpg.batch_size:
+            raise ValueError(
+                f'learner.ddpg.buffer_size is {ddpg.buffer_size}, expected more than '
+                f'learner.ddpg.batch_size, {ddpg.batch_size}: nothing would be learned'
+            )

@@ -36,17 +36,8 @@ class DdpgLearner(Learner):
     metric_names = METRICS
 
     def __init__(self, config: DdpgConfig, problem: Problem, seed: int) -> None:
+        config.check_training(problem.episode_steps)
         ddpg = config.ddpg
-        if ddpg.update_every > problem.episode_steps:
-            raise ValueError(
-                f'learner.ddpg.update_every is {ddpg.update_every}, expected at most '
-                f'task.time_limit_steps, {problem.episode_steps}: nothing would be learned'
-            )
-        if ddpg.buffer_size <= ddpg.batch_size:
-            raise ValueError(
-                f'learner.ddpg.buffer_size is {ddpg.buffer_size}, expected more than '
-                f'learner.ddpg.batch_size, {ddpg.batch_size}: nothing would be learned'
-            )
         self._config, self.problem = ddpg, problem
         sizes = problem.observation_size, problem.action_size
         init, noise, replay = np.random.SeedSequence(seed).spawn(3)
