@@ -3,8 +3,6 @@
 
 """Keeps joint targets within the robot's limits and rates, whatever they were made from."""
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -3,8 +3,6 @@
 
 """Walks as commanded, begins and stops safely: slowly to the standing pose."""
 
-from __future__ import annotations
-
 from enum import StrEnum
 
 import numpy as np

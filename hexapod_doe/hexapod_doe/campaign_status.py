@@ -3,8 +3,6 @@
 
 """Command line: what a campaign's folder holds, also while it runs and after a crash."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Sequence
 from pathlib import Path

@@ -3,8 +3,6 @@
 
 """How many cores this process may use: not what the machine has, but what a batch system gives."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterator
 from pathlib import Path

@@ -3,8 +3,6 @@
 
 """flock(2), and one sentence where a file system has none."""
 
-from __future__ import annotations
-
 import fcntl
 from pathlib import Path
 from typing import IO, Any

@@ -3,8 +3,6 @@
 
 """Command line `follow_report`: how well a recorded run follows a jumping line."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from hexapod_sim.command_line import CommandLine, output_file, path

@@ -3,8 +3,6 @@
 
 """Command line `rescore`: what recorded episodes earn with another reward."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from pathlib import Path

@@ -7,8 +7,6 @@ A row that is done is left alone, one that was interrupted goes on, and the same
 repeated at will.
 """
 
-from __future__ import annotations
-
 import argparse
 import faulthandler
 import sys

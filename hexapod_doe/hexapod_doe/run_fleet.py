@@ -3,8 +3,6 @@
 
 """Command line: train the rows of a plan that are due, many at a time, without the ROS graph."""
 
-from __future__ import annotations
-
 import argparse
 import math
 import signal

@@ -3,8 +3,6 @@
 
 """Command line `shadow`: an agent on recorded sensors, its actions beside the recorded ones."""
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys

@@ -3,8 +3,6 @@
 
 """Tells what a command is at, where that takes long enough to wonder."""
 
-from __future__ import annotations
-
 import sys
 import threading
 from collections.abc import Iterator

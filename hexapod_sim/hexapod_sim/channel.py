@@ -3,8 +3,6 @@
 
 """What a row of the sensor table says of a channel."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field

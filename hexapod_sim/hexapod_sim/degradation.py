@@ -3,8 +3,6 @@
 
 """What a device makes of the truth: errors, samples that are late, rare or lost, from a seed."""
 
-from __future__ import annotations
-
 import math
 import zlib
 from collections import deque

@@ -3,8 +3,6 @@
 
 """A device in place of a channel of the sim: its names, its quality and what is wrong with it."""
 
-from __future__ import annotations
-
 from array import array
 from collections.abc import Callable, Mapping
 from dataclasses import fields

@@ -3,8 +3,6 @@
 
 """Pictures of a simulation, drawn off-screen, and the files that they make: films and strips."""
 
-from __future__ import annotations
-
 import importlib.util
 import os
 import sys

@@ -3,8 +3,6 @@
 
 """Where each joint of the robot is in the arrays of a driver that has its own order and names."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import lru_cache
 

@@ -7,8 +7,6 @@ Messages are told by their fields alone, so that nothing here needs ROS. What a 
 looked at in the first message of a type; this runs for every sensor in every control period.
 """
 
-from __future__ import annotations
-
 from array import array
 from collections.abc import Callable
 from operator import attrgetter

@@ -3,8 +3,6 @@
 
 """What is to be seen of a simulation: pictures on demand, or a window that goes along."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -3,8 +3,6 @@
 
 """The robot as a machine that never waits: it plays what it was told last, or holds still."""
 
-from __future__ import annotations
-
 import sys
 from dataclasses import replace
 

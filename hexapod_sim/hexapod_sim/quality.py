@@ -3,8 +3,6 @@
 
 """How good a sensor is: six numbers for each channel, all zero for a perfect one."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Annotated

@@ -9,8 +9,6 @@ experiment and the tables of the documentation. A new sensor is a row here and a
 hexapod.xml that bears the name of its reading.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -3,8 +3,6 @@
 
 """Readings of the robot's sensors, from MuJoCo's sensor array to what their devices deliver."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from typing import Protocol
 

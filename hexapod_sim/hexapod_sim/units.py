@@ -3,8 +3,6 @@
 
 """Units that drivers publish instead of ours."""
 
-from __future__ import annotations
-
 import math
 
 from hexapod_sim.robot import GRAVITY

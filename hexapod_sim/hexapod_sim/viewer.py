@@ -3,8 +3,6 @@
 
 """A window that shows a simulation while it runs, in real time."""
 
-from __future__ import annotations
-
 import os
 import sys
 import time

@@ -3,8 +3,6 @@
 
 """Runs every check of the sensor contract on what was heard of a set's topics."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 
 from hexapod_agent.contract import (

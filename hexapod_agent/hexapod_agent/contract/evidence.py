@@ -3,8 +3,6 @@
 
 """What was heard of the sensor topics: who offers them, and decoded samples with their times."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any

@@ -3,8 +3,6 @@
 
 """The fields of the messages that the sensor table's readings come from."""
 
-from __future__ import annotations
-
 from hexapod_sim.channel import Channel
 
 ACCELERATION = 'linear_acceleration'

@@ -3,8 +3,6 @@
 
 """What a check says: the fault, the field, what was expected, and the cure."""
 
-from __future__ import annotations
-
 from dataclasses import asdict, dataclass
 from typing import Literal
 

@@ -3,8 +3,6 @@
 
 """Whether an IMU's axes and signs are ours: force up at rest, unit quaternions, upright."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 

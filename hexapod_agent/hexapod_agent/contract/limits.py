@@ -3,8 +3,6 @@
 
 """How far a sensor may depart from what the agent was trained with before the check refuses it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 

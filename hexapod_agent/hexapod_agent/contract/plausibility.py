@@ -3,8 +3,6 @@
 
 """Whether readings fit the robot itself: its weight on its feet, its motion, its range finder."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 import numpy as np

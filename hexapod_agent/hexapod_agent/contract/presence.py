@@ -3,8 +3,6 @@
 
 """Whether a topic is there: publishers, type, quality of service, messages."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from hexapod_agent.contract.finding import Finding

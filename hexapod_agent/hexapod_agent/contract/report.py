@@ -3,8 +3,6 @@
 
 """The outcome of a check: one row per topic and every finding, for people and for programs."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any

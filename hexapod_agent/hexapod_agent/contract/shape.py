@@ -3,8 +3,6 @@
 
 """Whether messages are what they should be: frame, joint names, lengths, finite numbers."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

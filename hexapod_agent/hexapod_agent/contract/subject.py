@@ -3,8 +3,6 @@
 
 """What one check looks at: a topic of a channel, what was heard of it, and the tolerances."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -3,8 +3,6 @@
 
 """Whether a topic keeps time: stamps that advance, at the rate, in step with the others."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

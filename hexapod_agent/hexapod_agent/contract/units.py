@@ -3,8 +3,6 @@
 
 """Whether numbers are in our units, and within the scale that the agent normalises them by."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -7,8 +7,6 @@ A message that looks right costs a few comparisons; only for one that does not t
 contract run on it, for their words.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace

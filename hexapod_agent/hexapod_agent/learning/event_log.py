@@ -3,8 +3,6 @@
 
 """Writes the learning curves of a run as TensorBoard event files."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Iterable

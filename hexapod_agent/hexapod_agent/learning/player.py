@@ -3,8 +3,6 @@
 
 """Plays a trained agent: the verbs of `Trainer`, without noise and without learning."""
 
-from __future__ import annotations
-
 from typing import Protocol
 
 import numpy as np

@@ -3,8 +3,6 @@
 
 """How far a training is: a bar on a terminal, a line now and then into a file or a pipe."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager

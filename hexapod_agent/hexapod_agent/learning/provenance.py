@@ -7,8 +7,6 @@ Its numbers depend on them to the last bit: numpy and torch choose by version an
 processor's instructions in which order a product of matrices is summed.
 """
 
-from __future__ import annotations
-
 import platform
 import subprocess
 from functools import lru_cache

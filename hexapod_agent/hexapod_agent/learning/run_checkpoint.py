@@ -3,8 +3,6 @@
 
 """The checkpoint beside the bag of a run, from which the run goes on after it was cut."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from hexapod_agent.deployment.agent_file import CheckpointError

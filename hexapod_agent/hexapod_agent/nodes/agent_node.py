@@ -3,8 +3,6 @@
 
 """Node `agent`: offers the action `train_run` and accepts one run at a time."""
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Sequence
 

@@ -3,8 +3,6 @@
 
 """Node `evaluation`: has a worker play a checkpoint, and measures the episodes by the topics."""
 
-from __future__ import annotations
-
 import os
 import time
 from collections import defaultdict, deque

@@ -3,8 +3,6 @@
 
 """Node `play`: plays a checkpoint, by the worker of its namespace or in real time by itself."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any

@@ -3,8 +3,6 @@
 
 """The YAML text of changes to a specification: from a file, an option or a goal."""
 
-from __future__ import annotations
-
 import reprlib
 from collections.abc import Iterable, Mapping
 from pathlib import Path

@@ -3,8 +3,6 @@
 
 """Node `cpg`: the pattern generator as a managed node, with the last word on every joint."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 from hexapod_node.diagnostics import Diagnostics, Health

@@ -3,8 +3,6 @@
 
 """Commands, joint states and joint trajectories as ROS messages."""
 
-from __future__ import annotations
-
 from array import array
 
 import numpy as np

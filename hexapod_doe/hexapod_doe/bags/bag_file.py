@@ -3,8 +3,6 @@
 
 """Opens a bag with MCAP storage, checks that it is whole, and reads its messages."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator
 from contextlib import AbstractContextManager

@@ -3,8 +3,6 @@
 
 """Which bags there are in a folder, and which of them are complete."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from hexapod_doe.bags.bag_file import BagFile

@@ -7,8 +7,6 @@ All writing happens in `<bag>.partial`, which holds an advisory lock while its w
 `close` gives the directory its name, after everything has reached the disk and was read back.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping
 from dataclasses import replace

@@ -7,8 +7,6 @@ They are recorded once more from the old file, message by message, so that the n
 them what it would have said had it been there.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import islice

@@ -3,8 +3,6 @@
 
 """What can be told of a serialised message without decoding it: its encoding and its stamp."""
 
-from __future__ import annotations
-
 import struct
 
 from zstandard import ZstdDecompressor

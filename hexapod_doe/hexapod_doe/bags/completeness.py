@@ -3,8 +3,6 @@
 
 """Says of one recorded episode whether every topic delivered every control period, once."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise

@@ -8,8 +8,6 @@ went on from, or none if it begins anew, and any bag that was closed and is dama
 closed leaves none. What is of another run, by sensors, seed or configuration, stays.
 """
 
-from __future__ import annotations
-
 import re
 import shutil
 from collections.abc import Mapping

@@ -3,8 +3,6 @@
 
 """Decodes messages of an MCAP file by the definitions that stand in it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any

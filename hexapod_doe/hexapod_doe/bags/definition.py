@@ -7,8 +7,6 @@ Messages go over the wire without their field names: whoever reads them by anoth
 they were written by gets wrong numbers, or none, and no word of it.
 """
 
-from __future__ import annotations
-
 import re
 from itertools import zip_longest
 

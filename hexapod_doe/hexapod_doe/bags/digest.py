@@ -7,8 +7,6 @@ It is of their bytes: a message that was serialised anew may differ in its paddi
 CDR leaves to chance.
 """
 
-from __future__ import annotations
-
 import hashlib
 import struct
 from collections.abc import Iterable

@@ -3,8 +3,6 @@
 
 """Durations as people say them."""
 
-from __future__ import annotations
-
 _UNITS = (('years', 365.25 * 86400.0), ('days', 86400.0), ('hours', 3600.0), ('minutes', 60.0))
 
 

@@ -3,8 +3,6 @@
 
 """Serialises the result of an episode as the graph publishes it, without a ROS process."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 from typing import Any

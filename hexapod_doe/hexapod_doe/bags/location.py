@@ -3,8 +3,6 @@
 
 """Where a bag is: a directory of rosbag2, or one MCAP file of it by itself."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from pathlib import Path

@@ -3,8 +3,6 @@
 
 """One MCAP file of a bag: how to open it, and what it says of its topics and their messages."""
 
-from __future__ import annotations
-
 import os
 from collections import Counter
 from collections.abc import Iterator

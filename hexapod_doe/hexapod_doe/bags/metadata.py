@@ -3,8 +3,6 @@
 
 """What a bag says of itself: its metadata.yaml, or the sums of a bare MCAP file."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path

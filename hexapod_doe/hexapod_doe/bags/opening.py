@@ -3,8 +3,6 @@
 
 """Opens the files of one bag, and turns what goes wrong with them into errors of the bag."""
 
-from __future__ import annotations
-
 import struct
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -3,8 +3,6 @@
 
 """Says which recorded messages are due when, at any rate, with pause, step and loop."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from itertools import groupby

@@ -8,8 +8,6 @@ clock: two runs of one seed then give the same bag whatever machine they ran on,
 the same instant on every topic. A type without a stamp is logged at the newest stamp so far.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime
 from pathlib import Path

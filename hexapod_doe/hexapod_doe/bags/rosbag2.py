@@ -6,8 +6,6 @@
 Version 9 of the layout, as rosbag2 of ROS 2 Jazzy writes it.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass

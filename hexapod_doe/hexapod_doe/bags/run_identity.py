@@ -8,8 +8,6 @@ one experiment if length and configuration are the same; what they were made wit
 version of a library, changes their results in the last bits and is told.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import lru_cache

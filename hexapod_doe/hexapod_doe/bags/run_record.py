@@ -3,8 +3,6 @@
 
 """Reads bags without ROS: a run's metadata and episodes, and any topic's messages."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path

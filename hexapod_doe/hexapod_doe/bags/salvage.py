@@ -7,8 +7,6 @@ MCAP is written in chunks that stand for themselves, so everything up to the las
 be read. The result is a rosbag2 directory that any reader opens, but never a complete run.
 """
 
-from __future__ import annotations
-
 import itertools
 import time
 from collections.abc import Iterator

@@ -8,8 +8,6 @@ is made of, in the form that rosbag2's MCAP storage writes
 (https://mcap.dev/spec/registry#ros2msg), so that any reader decodes it without our packages.
 """
 
-from __future__ import annotations
-
 import json
 import re
 from functools import cache

@@ -3,8 +3,6 @@
 
 """Which topics of a bag can be played, and why others cannot; their messages."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator

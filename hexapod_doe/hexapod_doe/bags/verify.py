@@ -3,8 +3,6 @@
 
 """Reads a closed bag from end to end and compares it with what its recorder counted."""
 
-from __future__ import annotations
-
 import struct
 import zlib
 from collections import Counter

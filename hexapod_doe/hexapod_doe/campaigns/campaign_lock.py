@@ -7,8 +7,6 @@ A lock ends with the process that holds it, however that ends. What the lock fil
 holder is for the error message alone.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import socket

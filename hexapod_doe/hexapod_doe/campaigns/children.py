@@ -3,8 +3,6 @@
 
 """Processes of a campaign on this machine: each in a session of its own, none outlives us."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

@@ -3,8 +3,6 @@
 
 """Learning curves made small: a line of text, or the points of a small drawing."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 import numpy as np

@@ -3,8 +3,6 @@
 
 """A running campaign on the terminal: a screen that is kept up to date, or lines in a log."""
 
-from __future__ import annotations
-
 import math
 import time
 

@@ -3,8 +3,6 @@
 
 """Why tries of rows failed, as a file in the campaign's folder that outlives its manager."""
 
-from __future__ import annotations
-
 import csv
 import fcntl
 import os

@@ -3,8 +3,6 @@
 
 """The rows of a campaign that are due, as the runs of a fleet, with what is shown of them."""
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from contextlib import ExitStack
 from datetime import datetime

@@ -3,8 +3,6 @@
 
 """Fleets in processes side by side, which share out the rows of a campaign by their locks."""
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Sequence

@@ -3,8 +3,6 @@
 
 """A row of the plan as a run of a fleet: its bag, its checkpoints, and going on from them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Protocol

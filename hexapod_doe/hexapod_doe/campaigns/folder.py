@@ -3,8 +3,6 @@
 
 """Reads a campaign's progress from its folder alone, also while it runs and after a crash."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path

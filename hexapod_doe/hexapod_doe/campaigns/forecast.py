@@ -3,8 +3,6 @@
 
 """Says before a campaign starts how long it will take about; its pace tells better soon."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from hexapod_agent.specification.run_spec import RunSpec

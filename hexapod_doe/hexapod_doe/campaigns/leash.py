@@ -6,8 +6,6 @@
 Linux alone; elsewhere the command runs without a leash.
 """
 
-from __future__ import annotations
-
 import ctypes
 import os
 import signal

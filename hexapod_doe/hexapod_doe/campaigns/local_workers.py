@@ -3,8 +3,6 @@
 
 """Workers of a campaign as processes on this machine, which live no longer than the campaign."""
 
-from __future__ import annotations
-
 import os
 import shlex
 import time

@@ -3,8 +3,6 @@
 
 """What to type next: from a plan over its runs and their analysis to the confirmation."""
 
-from __future__ import annotations
-
 import shlex
 from collections.abc import Sequence
 from pathlib import Path

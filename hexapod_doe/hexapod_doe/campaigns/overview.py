@@ -3,8 +3,6 @@
 
 """Draws a campaign's progress for the terminal: figures, workers, learning curves."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 

@@ -6,8 +6,6 @@
 The page asks its reader to load it again every half minute, and requests nothing else.
 """
 
-from __future__ import annotations
-
 import tempfile
 import threading
 from collections.abc import Callable

@@ -3,8 +3,6 @@
 
 """Puts plan and configuration into a campaign's folder, so that it tells everything by itself."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import tempfile

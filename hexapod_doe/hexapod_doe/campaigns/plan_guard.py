@@ -3,8 +3,6 @@
 
 """Keeps a plan from being written over the runs of another one."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

@@ -3,8 +3,6 @@
 
 """How far a campaign is: the figures that terminal, page and status message all show."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field

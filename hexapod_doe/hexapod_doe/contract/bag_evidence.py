@@ -3,8 +3,6 @@
 
 """What a bag holds of the sensor topics, for the sensor contract."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path

@@ -3,8 +3,6 @@
 
 """The options of the `check_sensors` command line."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches

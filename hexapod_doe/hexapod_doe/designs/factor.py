@@ -3,8 +3,6 @@
 
 """Factors of an experiment, each a key of a run's specification with two levels."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property

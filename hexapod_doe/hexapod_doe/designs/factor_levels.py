@@ -3,8 +3,6 @@
 
 """Checks the levels of a factor by what a specification has under its key."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import is_dataclass, replace
 from typing import Any, get_args, get_type_hints

@@ -3,8 +3,6 @@
 
 """Node `case`: has one row trained by the worker that it shares its process with."""
 
-from __future__ import annotations
-
 import os
 import signal
 from functools import partial

@@ -3,8 +3,6 @@
 
 """Node `check_sensors`: holds the sensors of a live graph, or of a bag, against the contract."""
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Sequence

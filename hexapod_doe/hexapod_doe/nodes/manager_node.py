@@ -3,8 +3,6 @@
 
 """Node `manager`: runs a plan on every worker that it discovers."""
 
-from __future__ import annotations
-
 import shlex
 import time
 from collections.abc import Sequence

@@ -3,8 +3,6 @@
 
 """Node `player`: plays a bag with MCAP storage, byte for byte, with its clock."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Sequence
 from functools import partial

@@ -3,8 +3,6 @@
 
 """Node `recorder`: writes a run's bag from what is on the topics, byte for byte."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 

@@ -7,8 +7,6 @@ The agent node does not notice: its resets are answered, its topics deliver peri
 each when its command for the one before has come. The commands go nowhere but into a comparison.
 """
 
-from __future__ import annotations
-
 import os
 from collections import defaultdict
 from collections.abc import Collection, Sequence

@@ -3,8 +3,6 @@
 
 """Rows of a campaign as goals for workers."""
 
-from __future__ import annotations
-
 from diagnostic_msgs.msg import KeyValue
 from hexapod_interfaces.action import TrainRun
 

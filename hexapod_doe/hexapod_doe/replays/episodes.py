@@ -3,8 +3,6 @@
 
 """Episodes of a bag with all their topics, and the samples of a topic by their stamps."""
 
-from __future__ import annotations
-
 from bisect import bisect_right
 from collections.abc import Iterable
 from dataclasses import dataclass

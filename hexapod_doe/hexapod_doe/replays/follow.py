@@ -3,8 +3,6 @@
 
 """How a robot follows a line that jumps: the step responses of an episode that a bag holds."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path

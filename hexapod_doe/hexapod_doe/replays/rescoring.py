@@ -7,8 +7,6 @@ The poses of `odom` and the distances of `line_offset` are the numbers that the 
 unchanged reward gives the recorded one to the last bit.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise

@@ -8,8 +8,6 @@ checkpoint then repeats its lock-step bag to the last bit. Where a topic has no 
 stamp, as in real time, the newest one before it counts.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 

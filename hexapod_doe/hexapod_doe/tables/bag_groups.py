@@ -3,8 +3,6 @@
 
 """Which runs belong together: those of one plan, and of the plans that follow it."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace

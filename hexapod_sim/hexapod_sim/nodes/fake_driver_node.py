@@ -3,8 +3,6 @@
 
 """Node `fake_driver`: republishes one channel of the sim as a device of its own would."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial

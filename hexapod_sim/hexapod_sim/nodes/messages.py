@@ -3,8 +3,6 @@
 
 """Sensor readings as the ROS messages that real devices publish, and joint targets back."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property

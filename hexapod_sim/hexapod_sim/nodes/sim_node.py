@@ -3,8 +3,6 @@
 
 """Node `sim`: the simulated robot, with the topics that a real robot's drivers would have."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Sequence
 

@@ -10,8 +10,6 @@ A capsule is a cylinder with a sphere at each end. What collides is what does in
 the body's box and the feet. `<leg>_foot` frames keep their axes along odom, so no link has them.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from xml.etree import ElementTree

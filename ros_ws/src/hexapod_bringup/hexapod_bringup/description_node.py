@@ -3,8 +3,6 @@
 
 """Node `description`: the robot's URDF, latched, and its frames where tf2_msgs is installed."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 import numpy as np

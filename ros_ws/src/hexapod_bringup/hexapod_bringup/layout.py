@@ -3,8 +3,6 @@
 
 """Command line `layout`: how to see a run in Foxglove or in PlotJuggler, live or from a bag."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from hexapod_sim.command_line import CommandLine, file

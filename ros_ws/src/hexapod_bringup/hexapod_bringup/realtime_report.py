@@ -7,8 +7,6 @@ Runs sim, pattern generator and agent in real time, each in a process of its own
 their diagnostics say of the lateness of their ticks.
 """
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

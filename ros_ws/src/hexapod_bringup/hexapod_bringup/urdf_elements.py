@@ -3,8 +3,6 @@
 
 """Elements of a URDF, one function each."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from xml.etree import ElementTree

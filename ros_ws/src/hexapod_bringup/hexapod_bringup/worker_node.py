@@ -3,8 +3,6 @@
 
 """A whole worker in one process: sim, cpg, agent and recorder, served by one executor."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from hexapod_node.lifeline import follow

@@ -3,8 +3,6 @@
 
 """Actions under EventsExecutor: execution by coroutine, and handlers that may fail."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from rclpy import action

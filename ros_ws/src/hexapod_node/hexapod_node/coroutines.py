@@ -8,8 +8,6 @@ done, which keeps a core busy. Here the future's done-callback resumes it, so wa
 and the coroutine goes on inside the very callback that brought the message.
 """
 
-from __future__ import annotations
-
 import threading
 import time
 import types

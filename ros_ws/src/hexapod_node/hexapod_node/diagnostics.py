@@ -3,8 +3,6 @@
 
 """A node's health on /diagnostics, once a second."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue

@@ -6,8 +6,6 @@
 rcl ends a process, or raises from its depths, where a variable is wrong or HOME cannot be written.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 import tempfile

@@ -3,8 +3,6 @@
 
 """What an executable of a node begins with: a signal ends it well even while libraries load."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from importlib import import_module
 

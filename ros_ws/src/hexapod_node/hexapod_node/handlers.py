@@ -8,8 +8,6 @@ answers that it failed and why, a message is dropped, and either is counted by t
 endpoint, which the diagnostics show.
 """
 
-from __future__ import annotations
-
 import functools
 import traceback
 from collections import Counter

@@ -10,8 +10,6 @@ To ask the middleware who listens takes as long as to hand a sample over. A publ
 somebody waits for listeners, when one of its process comes or goes, and every few milliseconds.
 """
 
-from __future__ import annotations
-
 import functools
 import itertools
 import math

@@ -3,8 +3,6 @@
 
 """What is wrong with a message, in words and as a kind that can be counted."""
 
-from __future__ import annotations
-
 
 class InvalidMessageError(ValueError):
     """A message's contents cannot be used.

@@ -8,8 +8,6 @@ that any number of processes may lie between the two. A launch file sets a varia
 watches the launch: `ros2 launch` of ROS 2 ends on SIGTERM and leaves its nodes running.
 """
 
-from __future__ import annotations
-
 import ctypes
 import os
 import signal

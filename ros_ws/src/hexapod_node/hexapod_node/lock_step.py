@@ -3,8 +3,6 @@
 
 """Subscribes to topics and hands out whole control periods, as soon as each is complete."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Mapping
 from functools import partial

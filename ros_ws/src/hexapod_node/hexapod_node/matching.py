@@ -3,8 +3,6 @@
 
 """Who subscribes to what, as the graph reports it, and whether all are there who must be."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Protocol
 

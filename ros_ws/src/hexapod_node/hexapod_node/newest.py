@@ -3,8 +3,6 @@
 
 """Subscribes to topics for their newest samples, whichever quality of service drivers offer."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

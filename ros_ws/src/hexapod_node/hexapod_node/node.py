@@ -3,8 +3,6 @@
 
 """The base of every node of the hexapod: no peer can end it by what it sends."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -3,8 +3,6 @@
 
 """Declares a node's parameters from one table, which docs/interfaces.md is made of as well."""
 
-from __future__ import annotations
-
 import ast
 import inspect
 import re

@@ -7,8 +7,6 @@ With LOCALHOST discovery rmw_fastrtps announces a participant to the first 32 po
 and to nobody else: the first 32 know everybody, and each later one knows them and itself.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 from pathlib import Path

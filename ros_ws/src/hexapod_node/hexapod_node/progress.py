@@ -3,8 +3,6 @@
 
 """Tells a process that works from one that only spins."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 

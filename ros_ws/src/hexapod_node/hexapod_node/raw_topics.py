@@ -3,8 +3,6 @@
 
 """Subscribes to any topics of the graph for their serialised messages, whoever publishes them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from importlib import import_module

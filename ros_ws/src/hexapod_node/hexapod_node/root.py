@@ -3,8 +3,6 @@
 
 """Keeps what peers may name to one folder: whoever is in the ROS domain may send a request."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

@@ -3,8 +3,6 @@
 
 """Keeps the newest good sample of a topic for as long as it is young enough."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import asdict, dataclass

@@ -3,8 +3,6 @@
 
 """Begins ROS in a process: what every program does once, before its first node."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import rclpy

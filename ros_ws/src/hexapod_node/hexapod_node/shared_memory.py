@@ -9,8 +9,6 @@ Its ports, `fastrtps_port<number>`, are smaller and left alone: their numbers ar
 participant takes them over, and a live sender may have one open.
 """
 
-from __future__ import annotations
-
 import fcntl
 import re
 import sys

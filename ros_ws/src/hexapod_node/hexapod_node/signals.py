@@ -8,8 +8,6 @@ terminal and `ros2 launch` both send SIGINT: by Python's own handler the second 
 the end of the process, as the first one would any callback.
 """
 
-from __future__ import annotations
-
 import os
 import signal
 from types import FrameType

@@ -3,8 +3,6 @@
 
 """Starts nodes, spins them and stops them: the same main for every executable."""
 
-from __future__ import annotations
-
 import faulthandler
 import gc
 import sys

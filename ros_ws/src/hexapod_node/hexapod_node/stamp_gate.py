@@ -3,8 +3,6 @@
 
 """Decides by stamp which messages belong to the control period that is due."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from typing import Any

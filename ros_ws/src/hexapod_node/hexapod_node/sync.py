@@ -3,8 +3,6 @@
 
 """The two ways in which the nodes keep step, and the parameters that choose between them."""
 
-from __future__ import annotations
-
 from hexapod_node.parameters import Parameter
 
 LOCKSTEP = 'lockstep'

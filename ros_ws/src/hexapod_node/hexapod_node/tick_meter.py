@@ -3,8 +3,6 @@
 
 """How late periodic ticks are: counts and quantiles over any time, in constant memory."""
 
-from __future__ import annotations
-
 import math
 
 LATE_NS = 5_000_000

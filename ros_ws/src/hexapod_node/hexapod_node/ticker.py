@@ -3,8 +3,6 @@
 
 """Ticks of a node in real time, measured."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -8,8 +8,6 @@ EventsExecutor: see docs/upstream.md, whose test in tests/hexapod_node/test_upst
 they do. No node of this project makes a timer of rclpy.
 """
 
-from __future__ import annotations
-
 import heapq
 import itertools
 import threading

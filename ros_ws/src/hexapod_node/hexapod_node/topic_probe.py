@@ -3,8 +3,6 @@
 
 """Listens to topics for a while, with the times of arrival, and looks up who publishes them."""
 
-from __future__ import annotations
-
 import time
 from collections import deque
 from collections.abc import Mapping

@@ -7,8 +7,6 @@ docs/upstream.md tells each fault and when its way round may go. The timers, the
 have `hexapod_node.timers` to themselves.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

@@ -3,8 +3,6 @@
 
 """A layout of Foxglove: the robot in 3D, the nodes' health, and the plots in tabs."""
 
-from __future__ import annotations
-
 import json
 from typing import Any
 

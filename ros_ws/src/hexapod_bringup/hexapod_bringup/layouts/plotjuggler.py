@@ -3,8 +3,6 @@
 
 """A layout of PlotJuggler: the plots in tabs."""
 
-from __future__ import annotations
-
 from xml.etree import ElementTree
 
 from hexapod_bringup.layouts.plots import Curve, Plot, prefix, tabs

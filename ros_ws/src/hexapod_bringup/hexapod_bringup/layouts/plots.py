@@ -3,8 +3,6 @@
 
 """What there is to see of a run: plots by tabs, whatever program draws them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 
