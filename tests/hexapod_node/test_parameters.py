@@ -57,6 +57,7 @@ RATE = Parameter('rate', 1.0, 'how fast', range=(0.0, 10.0))
 GAIN = Parameter('gain', 0.5, 'how much', range=(0.0, 10.0), read_only=False)
 LOOP = Parameter('loop', False, 'whether', read_only=False)
 COUNT = Parameter('count', 3, 'how many', read_only=False)
+NAMES = Parameter('names', [''], 'which')
 
 
 @pytest.fixture
@@ -68,7 +69,7 @@ def started() -> Iterator[Callable[..., Node]]:
     def start(**given) -> Node:
         overrides = [RclpyParameter(name, value=value) for name, value in given.items()]
         nodes.append(Node('test', parameter_overrides=overrides))
-        declare(nodes[-1], (RATE, GAIN, LOOP, COUNT))
+        declare(nodes[-1], (RATE, GAIN, LOOP, COUNT, NAMES))
         return nodes[-1]
 
     yield start
@@ -92,6 +93,13 @@ def test_a_real_parameter_takes_a_whole_number_at_start(started, given, value) -
     assert described.type == RclpyParameter.Type.DOUBLE.value
     assert described.read_only
     assert not described.dynamic_typing
+
+
+@pytest.mark.graph
+@pytest.mark.parametrize('given', ['a=1', ['a=1']])
+def test_a_list_of_texts_takes_one_text_at_start(started, given) -> None:
+    parameter = started(names=given).get_parameter('names')
+    assert (parameter.value, parameter.type_) == (['a=1'], RclpyParameter.Type.STRING_ARRAY)
 
 
 @pytest.mark.graph

@@ -221,10 +221,11 @@ def _blocks(group: Group, column: str) -> list[str | None]:
 
 
 def _block(run: RunRecord, column: str) -> str | None:
-    value = run.metadata.get(column)
-    if column == CONFIG and value is not None:  # a name for a long text
-        return hashlib.sha256(value.encode()).hexdigest()[:8]
-    return value
+    if column != CONFIG:
+        return run.metadata.get(column)
+    found = [each for each in sorted(shared_settings(run).items()) if each[0].startswith(CONFIG)]
+    # A name for many values.
+    return hashlib.sha256(repr(found).encode()).hexdigest()[:8] if found else None
 
 
 def _rows(

@@ -3,6 +3,7 @@
 
 """Which runs are one table: a plan's, those of what follows it, and none that are not alike."""
 
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -145,6 +146,17 @@ def test_a_difference_that_is_a_block_is_analysed(base, fill, tmp_path):
         read_bags(folders, FACTORS)
     (table,) = read_bags(folders, FACTORS, blocks='episodes')
     assert table.rows['block'].value_counts().to_dict() == {'3': 8, '4': 8}
+
+
+def test_runs_of_two_bases_are_blocks_by_configuration(base, fill, tmp_path):
+    fold(base, tmp_path / 'fold' / 'plan.csv')
+    for bag in (base / 'runs').iterdir():
+        shutil.rmtree(bag)
+    folders = [fill('base', spec='{}'), fill('fold', spec='task: {line_y: 1}')]
+    with pytest.raises(TableError, match=r'task.line_y 1.0 in .*--blocks config'):
+        read_bags(folders, FACTORS)
+    (table,) = read_bags(folders, FACTORS, blocks='config')
+    assert sorted(table.rows['block'].value_counts()) == [8, 8]
 
 
 def test_other_versions_are_told(base, fill, tmp_path):

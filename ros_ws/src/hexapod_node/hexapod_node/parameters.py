@@ -49,7 +49,8 @@ class Parameter:
 def declare(node: Node, table: Iterable[Parameter]) -> None:
     """Declare each parameter of the table with its description, unit and limits.
 
-    A whole number may be given for a real one, at start and later: `rate:=2` is `rate:=2.0`.
+    A whole number may be given for a real one, at start and later: `rate:=2` is `rate:=2.0`. At
+    start one text may be given for a list of texts.
 
     Raises:
         rclpy.exceptions.InvalidParameterTypeException: a value given at start is of another type.
@@ -64,7 +65,7 @@ def declare(node: Node, table: Iterable[Parameter]) -> None:
         node.add_pre_set_parameters_callback(partial(_widened, node))
         _widening.add(node)
     for parameter in table:
-        value = _given_real(node, parameter)
+        value = _widened_at_start(node, parameter)
         node.declare_parameter(
             parameter.name,
             parameter.default if value is None else value,
@@ -73,17 +74,19 @@ def declare(node: Node, table: Iterable[Parameter]) -> None:
         )
 
 
-def _given_real(node: Node, parameter: Parameter) -> float | None:
-    """Return the real number that a whole one given at start stands for; None if none does.
+def _widened_at_start(node: Node, parameter: Parameter) -> float | list[str] | None:
+    """Return the real number, or the list, that a value given at start stands for, if it does.
 
     rclpy holds a declared type against what the command line said. A declaration without a type
     tells what that was.
     """
-    if not isinstance(parameter.default, float):
+    if not isinstance(parameter.default, float | list):
         return None
     probe = ParameterDescriptor(dynamic_typing=True)
     given = node.declare_parameter(parameter.name, parameter.default, probe)
     node.undeclare_parameter(parameter.name)
+    if isinstance(parameter.default, list):
+        return [given.value] if given.type_ == RclpyParameter.Type.STRING else None
     return float(given.value) if given.type_ == RclpyParameter.Type.INTEGER else None
 
 
