@@ -4,14 +4,19 @@
 """Command line `follow_report`: how well a recorded run follows a jumping line."""
 
 from collections.abc import Sequence
+from pathlib import Path
 
+import matplotlib as mpl
 from hexapod_sim.command_line import CommandLine, output_file, path
+from matplotlib.figure import Figure
 from rich.console import Console
 from rich.table import Table
 
 from hexapod_doe.errors import BagError
-from hexapod_doe.replays.follow import BAND, CHECK_S, Response, read_track, responses
-from hexapod_doe.reporting.figures.follow import save_following
+from hexapod_doe.replays.follow import BAND, CHECK_S, Response, Track, read_track, responses
+from hexapod_doe.reporting.figures.style import BLUE, GRID, ORANGE, RC, WIDE
+
+_PNG_DPI = 160
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -52,6 +57,32 @@ def _table(found: Sequence[Response]) -> Table:
             f'{response.offset_after:.3f}',
         )
     return table
+
+
+def draw_following(track: Track) -> Figure:
+    """Draw path and line from above with equal scales, and the offset over time below."""
+    figure = Figure(figsize=(WIDE, 3.6), layout='constrained')
+    above, below = figure.subplots(2, height_ratios=(1, 1.2))
+    above.plot(track.x, track.line, color=ORANGE, label='goal line', drawstyle='steps-post')
+    above.plot(track.x, track.y, color=BLUE, label='robot')
+    above.set_aspect('equal', adjustable='datalim')
+    above.set_xlabel('along the line (m)')
+    above.set_ylabel('across (m)')
+    above.set_title('From above', loc='left')
+    above.legend(loc='lower right', bbox_to_anchor=(1.0, 1.0), ncols=2, borderpad=0)
+    below.axhspan(-BAND, BAND, color=GRID, linewidth=0)
+    below.plot(track.time, track.offset, color=BLUE)
+    below.set_xlabel('time (s)')
+    below.set_ylabel('offset (m)')
+    below.set_title(f'Offset from the line; the band is ±{BAND:g} m', loc='left')
+    below.margins(x=0.0)
+    return figure
+
+
+def save_following(track: Track, path: Path) -> None:
+    """Write the figure as PNG, SVG or PDF, as the name of the file says."""
+    with mpl.rc_context(RC):
+        draw_following(track).savefig(path, dpi=_PNG_DPI)
 
 
 if __name__ == '__main__':

@@ -15,8 +15,8 @@ from hexapod_sim.command_line import one_line
 from hexapod_doe.campaigns.campaign import PLAN_FILE
 from hexapod_doe.campaigns.next_steps import CONFIRM_FOLDER, after_confirm
 from hexapod_doe.campaigns.plan_guard import check_free
-from hexapod_doe.designs.aberration import aberration_note
 from hexapod_doe.designs.aliases import (
+    aberration_note,
     alias_sets,
     defining_relation,
     defining_words,

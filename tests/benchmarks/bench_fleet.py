@@ -31,8 +31,8 @@ from pathlib import Path
 import yaml
 from bench_graph import Client
 from hexapod_agent.environment.env import HexapodLine
+from hexapod_agent.fleet.fleet import Stopwatch
 from hexapod_agent.fleet.pool import Pool
-from hexapod_agent.fleet.stopwatch import Stopwatch
 from hexapod_agent.learning.summary import EpisodeSummary
 from hexapod_agent.learning.training import Trainer
 from hexapod_agent.specification.run_spec import RunSpec

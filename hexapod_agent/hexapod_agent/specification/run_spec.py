@@ -23,12 +23,14 @@ from pydantic import TypeAdapter, ValidationError
 
 from hexapod_agent.algorithms import ALGORITHMS
 from hexapod_agent.algorithms.learner import LearnerConfig
-from hexapod_agent.specification.nested import flat, merged, nest
 from hexapod_agent.specification.observation import ObservationSpec, parse_observations
 from hexapod_agent.specification.sections import CpgConfig, TrainingConfig
 from hexapod_agent.specification.spec_text import (
     ConfigError,
     changes_of,
+    flat,
+    merged,
+    nest,
     parsed_setting,
     quoted,
     read_changes,

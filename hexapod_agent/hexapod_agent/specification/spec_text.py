@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The YAML text of changes to a specification: from a file, an option or a goal."""
+"""The YAML text of changes to a specification, from a file, an option or a goal, and its keys."""
 
 import reprlib
 from collections.abc import Iterable, Mapping
@@ -12,11 +12,36 @@ import yaml
 from hexapod_sim.article import article
 from hexapod_sim.command_line import CommandLine, file
 
-from hexapod_agent.specification.nested import merged, nest
-
 _MOST_CHARACTERS, _MOST_BRACKETS = 20_000, 500
 _QUOTES = reprlib.Repr()
 _QUOTES.maxstring = _QUOTES.maxother = 200
+
+
+def flat(mapping: Mapping[str, Any], prefix: str = '') -> dict[str, Any]:
+    """Return nested values by their dotted keys."""
+    values: dict[str, Any] = {}
+    for key, value in mapping.items():
+        nested = flat(value, f'{prefix}{key}.') if isinstance(value, Mapping) else None
+        values |= nested if nested is not None else {f'{prefix}{key}': value}
+    return values
+
+
+def merged(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return `base` with the values of `changes`, section by section."""
+    found = dict(base)
+    for key, value in changes.items():
+        nested = isinstance(value, Mapping) and isinstance(found.get(key), Mapping)
+        found[key] = merged(found[key], value) if nested else value
+    return found
+
+
+def nest(key: str, value: Any) -> dict[str, Any]:
+    """Return the one value of a dotted key as nested values."""
+    *sections, name = key.split('.')
+    found = {name: value}
+    for section in reversed(sections):
+        found = {section: found}
+    return found
 
 
 class ConfigError(ValueError):

@@ -8,11 +8,22 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from hexapod_doe.bags.bag_file import RawMessage
-from hexapod_doe.bags.durations import duration_text
 
-# No robot rests this long within a recording: clocks that were set, or stamps that were not.
+_UNITS = (('years', 365.25 * 86400.0), ('days', 86400.0), ('hours', 3600.0), ('minutes', 60.0))
 MOST_PAUSE_NS = 24 * 3600 * 1_000_000_000
 _LONG_NS = 10_000_000_000
+
+
+def duration_text(nanoseconds: int) -> str:
+    """Return a duration in the largest unit of which it has two, such as '55.8 years'."""
+    seconds = nanoseconds * 1e-9
+    for name, size in _UNITS:
+        if seconds >= 2.0 * size:
+            return f'{seconds / size:.1f} {name}'
+    return f'{seconds:.1f} s'
+
+
+# No robot rests this long within a recording: clocks that were set, or stamps that were not.
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,7 @@
 
 from dataclasses import dataclass
 
-from hexapod_doe.designs.aberration import aberration_note
-from hexapod_doe.designs.aliases import alias_sets, clear_interactions, resolution
+from hexapod_doe.designs.aliases import aberration_note, alias_sets, clear_interactions, resolution
 from hexapod_doe.designs.catalogue import catalogue_generators, fractions_of
 from hexapod_doe.designs.design import FRACTIONS, Design, factor_letters
 from hexapod_doe.designs.power import replicates_for, smallest_effect

@@ -26,8 +26,7 @@ from hexapod_doe.bags.recording import Recording
 from hexapod_doe.bags.run_bag import EPISODE_RESULT, EVALUATION_TOPIC, RESULT_TOPIC
 from hexapod_doe.bags.salvage import set_aside
 from hexapod_doe.errors import BagError
-from hexapod_doe.nodes.recorded_topic import recorded_topic
-from hexapod_doe.nodes.sampled_topics import SampledTopics
+from hexapod_doe.nodes.sampled_topics import SampledTopics, recorded_topic
 
 
 def _seconds(name: str, default: float, description: str) -> Parameter:

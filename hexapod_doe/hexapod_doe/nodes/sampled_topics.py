@@ -12,8 +12,40 @@ from hexapod_node.coroutines import until_true
 from hexapod_node.raw_topics import RawSubscriptions
 
 from hexapod_doe.bags.recording import Recording
+from hexapod_doe.bags.rosbag2 import OfferedQos, Topic
 from hexapod_doe.errors import BagError
-from hexapod_doe.nodes.recorded_topic import recorded_topic
+
+if TYPE_CHECKING:
+    from rclpy.qos import QoSProfile
+    from rclpy.topic_endpoint_info import TopicEndpointInfo
+
+
+def recorded_topic(name: str, publishers: list[TopicEndpointInfo]) -> Topic:
+    """Describe a topic as its publishers offer it.
+
+    Raises:
+        BagError: they publish different types.
+    """
+    types = sorted({publisher.topic_type for publisher in publishers})
+    if len(types) != 1:
+        raise BagError(f'topic {name}: types {", ".join(types) or "unknown"}, expected one')
+    return Topic(
+        name, types[0], tuple(_offered(publisher.qos_profile) for publisher in publishers)
+    )
+
+
+def _offered(qos: QoSProfile) -> OfferedQos:
+    return OfferedQos(
+        reliability=qos.reliability.name.lower(),
+        durability=qos.durability.name.lower(),
+        history=qos.history.name.lower(),
+        depth=qos.depth,
+        liveliness=qos.liveliness.name.lower(),
+        deadline_ns=qos.deadline.nanoseconds,
+        lifespan_ns=qos.lifespan.nanoseconds,
+        liveliness_lease_ns=qos.liveliness_lease_duration.nanoseconds,
+    )
+
 
 if TYPE_CHECKING:
     from rclpy.node import Node

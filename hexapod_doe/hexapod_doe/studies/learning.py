@@ -23,7 +23,7 @@ from hexapod_agent.train import AGENT, CHECKPOINT, LOG
 from hexapod_sim.command_line import CommandLine, file, folder, whole
 from matplotlib.axes import Axes
 
-from hexapod_doe.reporting.figures.outliers import outliers
+from hexapod_doe.reporting.figures.learning import outliers
 from hexapod_doe.reporting.figures.parts import grid
 from hexapod_doe.reporting.figures.style import BLUE, INK, MUTED, ORANGE, RC, WIDE
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 
 import pytest
-from hexapod_doe.designs.aberration import aberration_note
+from hexapod_doe.designs.aliases import aberration_note
 from hexapod_doe.designs.catalogue import catalogue_generators, fractions_of
 from hexapod_doe.designs.design import Design, factor_letters, from_generators
 

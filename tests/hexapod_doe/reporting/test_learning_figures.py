@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from hexapod_doe.reporting.figures import learning
-from hexapod_doe.reporting.figures.outliers import outliers
+from hexapod_doe.reporting.figures.learning import outliers
 from hexapod_doe.reporting.figures.reward_terms import POINTS, reward_terms
 from hexapod_doe.reporting.figures.style import WIDE
 from hexapod_doe.reporting.glossary import glossary, meanings

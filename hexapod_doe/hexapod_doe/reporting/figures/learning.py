@@ -3,6 +3,8 @@
 
 """Figures of the runs themselves: every run's response, and the learning curves of each case."""
 
+from typing import Any
+
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
@@ -11,7 +13,6 @@ from matplotlib.ticker import MaxNLocator
 
 from hexapod_doe.records.results import Analysis
 from hexapod_doe.reporting.figures.chart import Chart
-from hexapod_doe.reporting.figures.outliers import outliers
 from hexapod_doe.reporting.figures.parts import canvas, failed, grid, is_wide, unit_label
 from hexapod_doe.reporting.figures.style import BLUE, INK, MUTED, ORANGE, SURFACE
 from hexapod_doe.reporting.formats import count, number
@@ -23,6 +24,7 @@ MAX_NAMES = 64
 """More cases than this are drawn without their names, closer together."""
 POINTS = 40
 """A curve is drawn through at most so many episodes; the bags hold them all."""
+_FENCE = 1.5
 
 
 def runs_by_case(analysis: Analysis) -> Chart:
@@ -141,3 +143,10 @@ def _curves_title(curves: pd.DataFrame) -> str:
     episodes = int(curves.groupby('run_id')['episode'].nunique().max())
     change = 'gains' if gain > 0 else 'loses'
     return f'In {count(episodes, "episode")} the median run {change} {number(abs(gain), 2)}'
+
+
+def outliers(values: 'pd.Series[float]') -> list[Any]:
+    """Return the labels of values beyond 1.5 interquartile ranges of the quartiles (Tukey)."""
+    low, high = values.quantile([0.25, 0.75])
+    reach = _FENCE * (high - low)
+    return list(values.index[(values < low - reach) | (values > high + reach)])
