@@ -236,6 +236,8 @@ def _finish(plan: Plan, levels: np.ndarray, out: Path) -> None:
     if not plan.treatments.default:
         for factor in plan.treatments.factors:
             print(f'{factor.letter}  {factor.change}  ({factor.key})')
+        for name, channel in plan.treatments.unseen(plan.levels):
+            print(f'Note: {name!r} changes nothing: no case observes {channel}')
     print(f'{len(plan.rows)} runs: {settings.cases} cases x {settings.replicates} -> {out}')
     if settings.resolution is not None:
         _print_words(settings.defining_relation, settings.resolution)

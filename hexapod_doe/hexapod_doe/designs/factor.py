@@ -11,7 +11,7 @@ from typing import Any
 import yaml
 from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_agent.specification.spec_text import ConfigError, parsed, quoted
-from hexapod_sim.sensor_table import CHANNELS
+from hexapod_sim.sensor_table import CHANNELS, SENSORS
 
 from hexapod_doe.errors import BagError
 
@@ -174,6 +174,17 @@ class Treatments:
                 seen[factor.letter] = level > 0
         found = [letter for letter, on in seen.items() if on]
         return ''.join(found if self.default else sorted(found))
+
+    def unseen(self, cases: Iterable[Sequence[float]]) -> list[tuple[str, str]]:
+        """Return factors of a device that no case observes: name, and the channel with its key."""
+        seen = set().union(*map(self.observations, cases))
+        keys = {factor.name: factor.key.split('.') for factor in self.factors}
+        named = {name: SENSORS[key[1]] for name, key in keys.items() if key[0] == 'sensors'}
+        return [
+            (name, f'{channel.name} ({OBSERVATIONS}{channel.letter})')
+            for name, channel in named.items()
+            if channel.letter and channel.letter not in seen
+        ]
 
     def spec(self, levels: Sequence[float]) -> RunSpec:
         """Return the specification of the runs of a case.

@@ -194,6 +194,16 @@ def test_a_malformed_file_gives_one_line_and_no_plan(tmp_path, capsys, text, mes
     assert not (tmp_path / 'new').exists()
 
 
+@pytest.mark.parametrize(('options', 'told'), [((), True), (('--set', 'observations=F'), False)])
+def test_a_sensor_that_no_case_observes_is_told(tmp_path, capsys, options, told):
+    noise = '- {name: n, key: sensors.foot_force.noise, low: 0, high: 1}\n'
+    always = '- {name: j, key: sensors.joint_states.noise, low: 0, high: 0.1}'
+    written(tmp_path, noise + always + OTHER, *options)
+    note = "Note: 'n' changes nothing: no case observes foot forces (observations.F)\n"
+    printed = capsys.readouterr().out
+    assert (note in printed, printed.count('Note')) == (told, int(told))
+
+
 def test_a_plan_without_its_factors_is_refused_and_they_are_named(tmp_path):
     sensor = '- {name: a, key: task.yaw_share, low: 0, high: 1}\n'
     out = written(
