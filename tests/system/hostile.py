@@ -48,6 +48,7 @@ WORDS = (
 SPARED_TRANSITIONS = (5, 6, 7)
 _UNANSWERED = 3000
 _PACE = 100
+_TURN_S = 0.001
 
 
 class Hostile:
@@ -103,8 +104,10 @@ class Hostile:
     def spin(self, seconds: float) -> None:
         """Take in what comes for a while."""
         end = time.monotonic() + seconds
-        while (left := end - time.monotonic()) > 0.0:
-            self._executor.spin_once(timeout_sec=left)
+        while time.monotonic() < end:
+            # The same limit always: at another one rclpy begins its round of what is ready anew,
+            # and comes to no answer while there are topics.
+            self._executor.spin_once(timeout_sec=_TURN_S)
 
     def answers(self, node: str, timeout_s: float = 60.0) -> bool:
         """Whether a node answers a plain question."""
