@@ -99,6 +99,7 @@ def _run(args: argparse.Namespace) -> int:
     with campaign_lock(directory, shared=True):
         campaign = Campaign.open(plan, attempts=1, changes=changes)
         campaign.check_own()
+        campaign.forget_cuts()
         for run_id, damage in campaign.damaged.items():
             print(f'run_fleet: {run_id} is trained anew: {damage}', file=sys.stderr)
         campaign.check_writable()

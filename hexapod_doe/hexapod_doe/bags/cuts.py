@@ -45,6 +45,12 @@ def forget_cuts(
             _remove(cut)
 
 
+def forget_cuts_of_closed(bag: Path) -> None:
+    """Remove what a bag that is closed leaves no use for: who closed it may have been killed."""
+    if cuts_of(bag):
+        forget_cuts(bag, _said_of(bag / f'{bag.name}_0.mcap'), closed=True)
+
+
 def _is_useless(found: Mapping[str, str], metadata: Mapping[str, str], closed: bool) -> bool:
     """Whether what a cut says of itself shows that it is of no use; it is if it says nothing."""
     if not found:

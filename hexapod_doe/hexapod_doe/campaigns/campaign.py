@@ -13,6 +13,7 @@ from pathlib import Path
 
 from hexapod_agent.specification.run_spec import RunSpec
 
+from hexapod_doe.bags.cuts import forget_cuts_of_closed
 from hexapod_doe.campaigns.changes import Changes
 from hexapod_doe.campaigns.row import RUNS_FOLDER, Row, read_rows
 from hexapod_doe.errors import CampaignError
@@ -103,6 +104,12 @@ class Campaign:
             'give the options that they were made with, use a folder of its own, or move these '
             f'bags out of {self.directory / RUNS_FOLDER} to have the rows trained anew'
         )
+
+    def forget_cuts(self) -> None:
+        """Remove recordings that were cut of rows that are done, where that was prevented."""
+        for row in self.rows:
+            if row.run_id in self.done:
+                forget_cuts_of_closed(row.bag)
 
     @property
     def failed(self) -> list[str]:

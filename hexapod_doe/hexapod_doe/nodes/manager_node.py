@@ -106,6 +106,7 @@ class ManagerNode(Node):
         changes = Changes.of(*(self._parameter(name) for name in ('config', 'set', 'episodes')))
         self._campaign = Campaign.open(plan, self._parameter('attempts'), changes)
         self._campaign.check_own()
+        self._campaign.forget_cuts()
         keep_config(plan.resolve(), self._campaign.base)
         self._failures = FailureLog(self._campaign.directory)
         self._failures.clear()

@@ -3,11 +3,12 @@
 
 """Cut recordings are kept as long as a run may go on from them, and no longer."""
 
+import shutil
 from pathlib import Path
 
 import pytest
 from hexapod_doe.bags.carry_over import open_recording
-from hexapod_doe.bags.cuts import cuts_of
+from hexapod_doe.bags.cuts import cuts_of, forget_cuts_of_closed
 from hexapod_doe.bags.recording import Recording
 from hexapod_doe.bags.salvage import set_aside
 
@@ -73,3 +74,13 @@ def test_a_link_that_stands_for_a_cut_goes_and_what_it_leads_to_stays(attempt, t
     attempt(0, 9).finish(9, {})
     assert not (tmp_path / 'r1').is_symlink()
     assert names(tmp_path) == []
+
+
+def test_what_a_kill_at_the_end_left_of_a_finished_run_goes_at_the_next_start(attempt, tmp_path):
+    attempt(0, 3).abandon()
+    shutil.copytree(tmp_path / 'r1.partial', tmp_path / 'kept')
+    attempt(3, 9).finish(9, {})
+    (tmp_path / 'kept').rename(tmp_path / 'r1.cut_1')
+    forget_cuts_of_closed(tmp_path / 'r1')
+    assert names(tmp_path) == []
+    assert (tmp_path / 'r1').is_dir()
