@@ -9,10 +9,12 @@ docs/upstream.md describes each one, and which lines of ours may go then.
 import subprocess
 import sys
 
+import pytest
+
 
 def python(program: str) -> 'subprocess.CompletedProcess[str]':
     return subprocess.run(
-        [sys.executable, '-c', program], capture_output=True, text=True, timeout=60, check=False
+        [sys.executable, '-c', program], capture_output=True, text=True, timeout=200, check=False
     )
 
 
@@ -46,8 +48,9 @@ def spin(seconds):
         count += 1
     return count
 
-# Whether it comes to a storm is a matter of moments: most rounds do.
-for round in range(20):
+# Whether it comes to a storm is a matter of moments: on a busy machine the first round does as a
+# rule, on a quiet one it has taken 15.
+for round in range(60):
     for stall in (0.03, 0.06, 0.12, 0.25, 0.3, 0.1, 0.05):
         time.sleep(stall)
         spin(0.02)
@@ -59,6 +62,7 @@ for round in range(20):
 """
 
 
+@pytest.mark.slow
 def test_timers_that_come_and_go_stop_the_others() -> None:
     mended = 'rclpy serves timers again: hexapod_node/timers.py may use them, see docs/upstream.md'
     assert 'ticks of 20' in python(TIMERS).stdout, mended

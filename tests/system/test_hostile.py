@@ -30,8 +30,8 @@ GOOD = SHORT.replace('{evaluation', '{episodes: 5, evaluation') + 'observations:
 AGENT = ROOT / 'ros_ws/src/hexapod_bringup/agents/ABCDE.pt'
 
 # Messages, requests, parameter sets, and in how many turns.
-SOME = (1000, 1000, 2000, 1)
-ALL = (2000, 1000, 2000, 2)
+SOME = (1_500, 150, 150, 3)
+ALL = (int(100_000 * SHARE), int(10_000 * SHARE), int(10_000 * SHARE), 20)
 FEW_NODES = {
     'worker': 'ros2 run hexapod_bringup worker_node --ros-args -r __ns:=/w -p root:=campaign/runs '
     '-p match_timeout:=0.2 -p drain_timeout:=0.2 -p result_timeout:=0.2',
