@@ -74,7 +74,9 @@ def found(tmp_path: Path) -> dict:
     path = os.pathsep.join((str(tmp_path), os.environ.get('PYTHONPATH', '')))
     command = [sys.executable, '-c', LOOK]
     environment = os.environ | {'PYTHONPATH': path}
-    told = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60.0)
+    told = subprocess.run(
+        command, env=environment, cwd=tmp_path, capture_output=True, text=True, timeout=60.0
+    )
     assert told.returncode == 0, told.stderr
     return json.loads(told.stdout)
 
