@@ -22,12 +22,12 @@ def python(program: str) -> 'subprocess.CompletedProcess[str]':
 TIMERS = """
 import time
 import rclpy
-from rclpy.clock import Clock, ClockType
+from hexapod_node.coroutines import STEADY
 from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.node import Node
 
 rclpy.init()
-node, ticks, STEADY = Node('storm'), [], Clock(clock_type=ClockType.STEADY_TIME)
+node, ticks = Node('storm'), []
 node.create_timer(0.05, lambda: ticks.append(1), clock=STEADY)
 
 def replace(period):

@@ -16,6 +16,7 @@ from concurrent import futures
 from typing import Any, TypeVar
 
 from rclpy.client import Client
+from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.service import Service
 from rclpy.task import Future
@@ -24,6 +25,8 @@ from hexapod_node.handlers import failed
 from hexapod_node.timers import call_later, call_soon
 from hexapod_node.upstream import answer_later
 
+STEADY = Clock(clock_type=ClockType.STEADY_TIME)
+"""A clock for timers of rclpy that goes on when simulated time stands."""
 _POLL_S = 0.005
 Result = TypeVar('Result')
 Handler = Callable[[Any, Any], Coroutine[Future, None, Any]]
