@@ -26,6 +26,7 @@ from hexapod_doe.stages import stage
 from hexapod_doe.tables.bag_response import ARTICLE_RESPONSE
 from hexapod_doe.tables.bag_table import bag_responses, confirmation_runs, plan_rule, read_bags
 from hexapod_doe.tables.csv_table import read_csv, read_responses
+from hexapod_doe.tables.fractions import runs_of
 from hexapod_doe.tables.table import RunTable
 
 
@@ -74,6 +75,13 @@ def summary(analysis: Analysis) -> str:
 
 
 def _tables(args: argparse.Namespace) -> list[RunTable]:
+    tables = _whole_tables(args)
+    if not args.design:
+        return tables
+    return [runs_of(table, name) for table in tables for name in args.design]
+
+
+def _whole_tables(args: argparse.Namespace) -> list[RunTable]:
     if args.bags:
         for path in args.bags:
             if path.is_file():

@@ -146,7 +146,7 @@ def test_errors_are_one_line(words, message, capsys):
     assert error.count('\n') == 1
 
 
-def test_an_unknown_option_is_named(capsys):
+def test_an_unknown_design_is_named(capsys):
     with pytest.raises(SystemExit):
         main(['--design', 'third'])
-    assert "invalid choice: 'third'" in capsys.readouterr().err
+    assert "design 'third': expected one of full, half" in capsys.readouterr().err

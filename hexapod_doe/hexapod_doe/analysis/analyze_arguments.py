@@ -44,6 +44,14 @@ def build_parser() -> CommandLine:
         help='column, or key of the metadata of bags, whose differences are taken out, such as '
         "seed; '' for none (default of bags: what the plan says, or none with --article)",
     )
+    source.add_argument(
+        '--design',
+        nargs='+',
+        default=[],
+        metavar='NAME',
+        help='take apart what was planned as one, such as quarter+eighth: only the runs of this '
+        'fraction, or of each of several, which are compared',
+    )
     add_options(parser.add_argument_group('model'), Options, _MODEL)
     beyond = parser.add_argument_group('beyond the article')
     add_options(beyond, Options, ('estimand', 'failure_threshold', 'devices', 'delta', 'seed'))

@@ -16,6 +16,8 @@ from hexapod_doe.designs.terms import LETTERS, letters_on, product, sort_key
 MIN_FACTORS, MAX_FACTORS = 2, len(LETTERS)
 FRACTIONS = {'full': 0, 'half': 1, 'quarter': 2, 'eighth': 3, 'sixteenth': 4}
 """The named fractions: how many factors are generated from the others."""
+JOINT = '+'
+"""Joins the names of fractions whose cases are run as one design."""
 
 
 @dataclass(frozen=True)
@@ -79,22 +81,56 @@ class Design:
         return [letters_on(row, self.factors) for row in self.levels]
 
 
+@dataclass(frozen=True)
+class JoinedDesign(Design):
+    """The cases of several fractions, each once: they are no regular fraction themselves."""
+
+    parts: tuple[Design, ...]
+
+    @cached_property
+    def levels(self) -> np.ndarray:
+        """The coded levels, -1 and +1, in the order of the parts. Shape: (cases, factors)."""
+        return np.array(
+            list(dict.fromkeys(tuple(row) for part in self.parts for row in part.levels))
+        )
+
+    @cached_property
+    def words(self) -> dict[str, int]:
+        """The words that have one sign in all parts."""
+        first, *others = (part.words for part in self.parts)
+        return {
+            word: sign
+            for word, sign in first.items()
+            if all(each.get(word) == sign for each in others)
+        }
+
+
 def fraction(name: str, factors: str | int = 7) -> Design:
     """Return a named fraction: `full`, `half`, `quarter`, `eighth` or `sixteenth`.
+
+    Names with a plus between them, such as `quarter+eighth`, are run as one design, in which a
+    case that they share stands once.
 
     For seven factors `quarter` is F=ABCD, G=ABDE and `eighth` is E=ABC, F=BCD, G=ACD:
     Minitab's default generators, which the article's case numbers agree with.
 
     Args:
-        name: One of `FRACTIONS`.
+        name: One of `FRACTIONS`, or several.
         factors: The factor letters, or how many to take from the alphabet.
 
     Raises:
-        ValueError: The name is unknown or the fraction leaves no resolution III design.
+        ValueError: A name is unknown or given twice, or a fraction leaves no resolution III
+            design.
     """
+    letters = factor_letters(factors) if isinstance(factors, int) else factors
+    if JOINT in name:
+        names = name.split(JOINT)
+        if len(set(names)) < len(names):
+            raise ValueError(f'design {name!r}: expected each fraction once')
+        parts = tuple(fraction(each, letters) for each in names)
+        return JoinedDesign(name, letters, {}, parts)
     if name not in FRACTIONS:
         raise ValueError(f'design {name!r}: expected one of {", ".join(FRACTIONS)}')
-    letters = factor_letters(factors) if isinstance(factors, int) else factors
     _check_factors(letters)
     return Design(name, letters, catalogue_generators(letters, FRACTIONS[name]))
 

@@ -188,7 +188,11 @@ def _add_hours(parser: argparse.ArgumentParser) -> None:
 def _add_design(parser: CommandLine) -> None:
     which = parser.add_mutually_exclusive_group()
     which.add_argument(
-        '--design', default='eighth', choices=list(FRACTIONS), help='named fraction'
+        '--design',
+        default='eighth',
+        metavar='NAME',
+        help=f'named fraction: {", ".join(FRACTIONS)}; or several, such as quarter+eighth, whose '
+        'shared cases are run once (default eighth)',
     )
     which.add_argument('--generators', metavar='F=ABCD,G=-ABDE', help='generators of the design')
     parser.add_argument(

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from hexapod_doe.designs.aliases import defining_words
 from hexapod_doe.designs.design import Design, factor_letters, fraction, from_generators
 from hexapod_doe.designs.terms import column
 from hypothesis import given
@@ -116,3 +117,14 @@ def test_factor_letters_are_free():
     design = fraction('half', 'XYZ')
     assert design.generators == {'Z': 'XY'}
     assert design.observations() == ['Z', 'X', 'Y', 'XYZ']
+
+
+def test_joined_fractions_hold_each_case_once_and_the_words_of_both():
+    # Of the quarter's words the eighth has CEFG alone, with the same sign.
+    both = fraction('quarter+eighth')
+    assert both.cases == len(np.unique(both.levels, axis=0)) == 40
+    assert both.words == {'CEFG': 1} == defining_words(both.levels, both.factors)
+    with pytest.raises(ValueError, match='expected each fraction once'):
+        fraction('quarter+quarter')
+    with pytest.raises(ValueError, match="design 'third': expected one of full"):
+        fraction('quarter+third')
