@@ -6,8 +6,10 @@
 import gc
 import os
 import socket
+import sys
 import tempfile
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 from hexapod_node.participants import participants_here
@@ -25,6 +27,10 @@ _MARKERS = (
     'system: starts nodes as processes of their own',
     'slow: a proof of minutes; run by make test-slow',
 )
+
+
+# What several tests share, and who reads the documentation runs, lies there.
+sys.path.insert(0, str(Path(__file__).parent / 'support'))
 
 
 def pytest_configure(config: pytest.Config) -> None:

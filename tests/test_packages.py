@@ -21,6 +21,7 @@ ROOT = Path(__file__).resolve().parents[1]
 SOURCES = ROOT / 'ros_ws' / 'src'
 PACKAGES = sorted(path.name for path in SOURCES.iterdir() if (path / 'package.xml').is_file())
 PYTHON = [name for name in PACKAGES if (SOURCES / name / 'setup.py').is_file()]
+SHARED = {file.stem: file for file in (ROOT / 'tests' / 'support').glob('*.py')}
 # rosdep's keys of the libraries; '' where it has none, and requirements.txt alone names it.
 ROSDEP_KEYS = {
     'PIL': 'python3-pil',
@@ -85,7 +86,10 @@ def imported_by_tests(package: str) -> set[str]:
     files = {file for path in paths for file in (path.rglob('*.py') if path.is_dir() else [path])}
     above = {folder / 'conftest.py' for path in paths for folder in path.parents}
     files |= {file for file in above if file.is_file()}
-    return names_in(files) - {'conftest', *PACKAGES}
+    names = names_in(files)
+    while shared := names & SHARED.keys():
+        names = names - shared | names_in(map(SHARED.__getitem__, shared))
+    return names - {'conftest', *PACKAGES}
 
 
 @pytest.fixture(params=PACKAGES)

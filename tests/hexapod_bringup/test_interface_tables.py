@@ -6,7 +6,7 @@
 from pathlib import Path
 
 import pytest
-from hexapod_bringup.interface_tables import (
+from interface_tables import (
     PAGES,
     SAMPLE_BAG,
     metric_table,
@@ -16,7 +16,7 @@ from hexapod_bringup.interface_tables import (
 )
 
 ROOT = Path(__file__).resolve().parents[2]
-CURE = 'run `python -m hexapod_bringup.interface_tables`'
+CURE = 'run `python tests/support/interface_tables.py`'
 
 
 def stands(name: str, table: str) -> bool:

@@ -29,7 +29,7 @@ import numpy as np
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.nodes.messages import decode
 from hexapod_agent.specification.run_spec import RunSpec
-from hexapod_bringup.interface_tables import sensor_table
+from interface_tables import sensor_table
 from hexapod_doe.designs.factor import default_factors
 from hexapod_doe.designs.factor_levels import check_levels
 from hexapod_doe.designs.factor import Factor
@@ -71,7 +71,8 @@ def found(tmp_path: Path) -> dict:
         before = (package / name).read_text(encoding='utf-8')
         assert before.count(mark) == 1
         (package / name).write_text(before.replace(mark, text + mark), encoding='utf-8')
-    path = os.pathsep.join((str(tmp_path), os.environ.get('PYTHONPATH', '')))
+    support = Path(__file__).resolve().parents[1] / 'support'
+    path = os.pathsep.join((str(tmp_path), str(support), os.environ.get('PYTHONPATH', '')))
     command = [sys.executable, '-c', LOOK]
     environment = os.environ | {'PYTHONPATH': path}
     told = subprocess.run(

@@ -31,12 +31,6 @@ class RunModel:
         if not 0 <= self.failure < 1:
             raise ValueError(f'failure {self.failure}: expected a probability from 0 to below 1')
 
-    @property
-    def mixture_sigma(self) -> float:
-        """Standard deviation of all runs of one case, failed ones included."""
-        within = (1 - self.failure) * self.sigma**2 + self.failure * self.failure_sigma**2
-        return float(np.sqrt(within + self.failure * (1 - self.failure) * self.loss**2))
-
 
 @dataclass(frozen=True)
 class SimulatedPower:

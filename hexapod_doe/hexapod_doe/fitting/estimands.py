@@ -63,12 +63,6 @@ def best_of_weights(runs: int, best: int) -> np.ndarray:
     return np.array([comb(i, best - 1) / comb(runs, best) for i in range(runs)])
 
 
-def case_values(estimand: Estimand, response: np.ndarray, case: pd.Series) -> pd.Series:
-    """Return the summary of each case, by case number."""
-    values = pd.Series(response, index=case.index).groupby(case)
-    return values.apply(lambda group: float(np.sort(group) @ estimand.weights(len(group))))
-
-
 def pseudo_values(estimand: Estimand, response: np.ndarray, case: pd.Series) -> np.ndarray:
     """Return the jackknife pseudo-value of each run (n,).
 

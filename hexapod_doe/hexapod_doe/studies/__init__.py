@@ -1,4 +1,4 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Studies of the tool itself: of the analysis on simulated campaigns, and of the learning."""
+"""Studies of the tool itself: of the learning."""

@@ -12,8 +12,8 @@ from hexapod_doe.designs.factor import Factor, default_factors
 from hexapod_doe.errors import TableError
 from hexapod_doe.fitting.model import corners
 from hexapod_doe.records.options import Options
-from hexapod_doe.studies.simulated import table_of
 from hexapod_doe.tables.table import RunTable
+from simulated import table_of
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from hexapod_doe.analysis.analysis import analyse
 from hexapod_doe.analysis.describe import summarise
 from hexapod_doe.designs.design import fraction
 from hexapod_doe.records.options import Options
-from hexapod_doe.studies.simulated import repeated_levels, table_of
+from simulated import repeated_levels, table_of
 
 
 def caveats(design: str, response: np.ndarray, **options: object) -> str:

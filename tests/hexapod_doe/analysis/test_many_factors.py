@@ -12,7 +12,7 @@ import pytest
 from hexapod_doe.analysis.analysis import analyse
 from hexapod_doe.fitting.model import corners
 from hexapod_doe.records.options import Options
-from hexapod_doe.studies.simulated import table_of
+from simulated import table_of
 
 
 def _analyse_fifteen_factors() -> tuple[str, float]:

@@ -10,7 +10,7 @@ from hexapod_doe.choosing.averaging import ModelSpace, average
 from hexapod_doe.designs.design import fraction
 from hexapod_doe.fitting.model import AliasedTermsError, corners
 from hexapod_doe.fitting.regression import ols
-from hexapod_doe.studies.simulated import repeated_levels
+from simulated import repeated_levels
 
 
 def test_the_weights_are_those_of_the_enumerated_models() -> None:

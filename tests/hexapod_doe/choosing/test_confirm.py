@@ -12,9 +12,9 @@ from hexapod_doe.errors import AnalysisError
 from hexapod_doe.fitting.model import model_matrix
 from hexapod_doe.fitting.regression import ols
 from hexapod_doe.records.options import Options
-from hexapod_doe.studies.simulated import Truth, repeated_levels, table_of
 from hexapod_doe.tables.table import RunTable
 from scipy import stats
+from simulated import Truth, repeated_levels, table_of
 
 from hexapod_doe import analyze
 

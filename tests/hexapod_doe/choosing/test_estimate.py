@@ -11,8 +11,8 @@ from hexapod_doe.designs.design import fraction
 from hexapod_doe.fitting.estimands import estimand
 from hexapod_doe.fitting.model import corners, estimable_terms
 from hexapod_doe.fitting.regression import ols
-from hexapod_doe.studies.simulated import Truth, repeated_levels, table_of
 from hexapod_doe.tables.table import RunTable
+from simulated import Truth, repeated_levels, table_of
 
 CASES = Path(__file__).parents[2] / 'data' / 'cases'
 

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from hexapod_doe.choosing.failure import failure_threshold, two_groups
 from hexapod_doe.designs.design import fraction
-from hexapod_doe.studies.simulated import Truth, repeated_levels
 from hexapod_doe.tables.caveats import unseen_caveat
 from scipy import special
+from simulated import Truth, repeated_levels
 
 
 def cases(runs: int, replicates: int = 10) -> np.ndarray:

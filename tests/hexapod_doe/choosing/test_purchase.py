@@ -14,7 +14,7 @@ from hexapod_doe.errors import AnalysisError
 from hexapod_doe.fitting.model import corners, labels
 from hexapod_doe.records.findings import Purchase
 from hexapod_doe.records.options import Options
-from hexapod_doe.studies.simulated import Truth, repeated_levels, table_of
+from simulated import Truth, repeated_levels, table_of
 
 
 @pytest.fixture(scope='module')

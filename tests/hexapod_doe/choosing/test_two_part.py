@@ -10,9 +10,9 @@ from hexapod_doe.choosing.two_part import fit_parts, select_parts
 from hexapod_doe.designs.design import fraction
 from hexapod_doe.fitting.model import corners, labels
 from hexapod_doe.records.options import Options
-from hexapod_doe.studies.simulated import Truth, repeated_levels, table_of
 from hexapod_doe.tables.csv_table import read_csv
 from hexapod_doe.tables.table import RunTable
+from simulated import Truth, repeated_levels, table_of
 
 CASES = Path(__file__).parents[2] / 'data' / 'cases'
 

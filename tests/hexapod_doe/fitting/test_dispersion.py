@@ -10,7 +10,7 @@ from hexapod_doe.designs.design import fraction
 from hexapod_doe.fitting.dispersion import covariance_root, dispersion, relative_deviation
 from hexapod_doe.fitting.model import corners, estimable_terms, model_matrix
 from hexapod_doe.fitting.regression import Fit, ols
-from hexapod_doe.studies.simulated import repeated_levels
+from simulated import repeated_levels
 from statsmodels.regression.linear_model import OLS
 
 LEVELS = repeated_levels(fraction('quarter'), 5)

@@ -12,7 +12,7 @@ from hexapod_doe.designs.design import fraction
 from hexapod_doe.errors import AnalysisError
 from hexapod_doe.records.options import Options
 from hexapod_doe.records.results import Analysis
-from hexapod_doe.studies.simulated import repeated_levels, table_of
+from simulated import repeated_levels, table_of
 
 
 @cache

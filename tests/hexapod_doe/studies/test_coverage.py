@@ -3,8 +3,8 @@
 
 import numpy as np
 import pytest
-from hexapod_doe.studies.coverage import COMPARED, STATED, Study, Tally
-from hexapod_doe.studies.scenarios import SCENARIOS
+from coverage_study import COMPARED, STATED, Study, Tally
+from scenarios import SCENARIOS
 
 
 def test_a_tally_counts_what_lies_within_its_bounds() -> None:

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from hexapod_doe.fitting.model import corners
-from hexapod_doe.studies.simulated import Truth
+from simulated import Truth
 
 GRID = corners('ABCDEFG')
 

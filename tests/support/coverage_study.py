@@ -3,7 +3,7 @@
 
 """Study of the analysis on simulated campaigns: do its intervals cover, are its choices good?
 
-    python -m hexapod_doe.studies.coverage failures --repeats 200
+    python tests/support/coverage_study.py failures --repeats 200
 
 prints the tables of docs/statistics.md; `scenarios` names the kinds of campaigns.
 """
@@ -13,8 +13,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pandas as pd
-from hexapod_sim.command_line import CommandLine, number, whole
-
 from hexapod_doe.analysis.analysis import analyse
 from hexapod_doe.choosing.attribution import alias_safe
 from hexapod_doe.choosing.prediction import rank_descending
@@ -22,8 +20,9 @@ from hexapod_doe.fitting.model import corners, estimable_terms, labels
 from hexapod_doe.records.findings import Bounds, Estimate
 from hexapod_doe.records.options import Options
 from hexapod_doe.records.results import Analysis
-from hexapod_doe.studies.scenarios import SCENARIOS, Scenario
-from hexapod_doe.studies.simulated import table_of
+from hexapod_sim.command_line import CommandLine, number, whole
+from scenarios import SCENARIOS, Scenario
+from simulated import table_of
 
 STATED = 'stated'
 COMPARED = 'for comparison'

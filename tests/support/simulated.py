@@ -11,11 +11,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import pandas as pd
-from scipy import special, stats
-
 from hexapod_doe.designs.design import Design
 from hexapod_doe.fitting.model import model_matrix
 from hexapod_doe.tables.table import BLOCK, RESPONSE, RunTable, build_rows
+from scipy import special, stats
 
 _GRID = 4001
 

@@ -8,10 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
-
 from hexapod_doe.designs.design import fraction
 from hexapod_doe.fitting.model import corners
-from hexapod_doe.studies.simulated import Truth, repeated_levels
+from simulated import Truth, repeated_levels
 
 _NEVER = {'1': -50.0}
 _PLACKETT_BURMAN = (1, 1, -1, 1, 1, 1, -1, -1, -1, 1, -1)

@@ -3,7 +3,7 @@
 
 """Writes tables of the documentation from running nodes and from the code's tables.
 
-`python -m hexapod_bringup.interface_tables` replaces what stands between the markers of its pages;
+`python tests/support/interface_tables.py` replaces what stands between the markers of its pages;
 a test holds them to it.
 """
 
@@ -18,6 +18,7 @@ from hexapod_agent.learning.training import Trainer
 from hexapod_agent.nodes.agent_node import AgentNode
 from hexapod_agent.nodes.play_node import PlayNode
 from hexapod_agent.specification.run_spec import RunSpec
+from hexapod_bringup.description_node import DescriptionNode
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.designs.design import fraction
@@ -39,8 +40,6 @@ from rclpy.lifecycle import LifecycleNode
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.utilities import try_shutdown
-
-from hexapod_bringup.description_node import DescriptionNode
 
 SAMPLE_BAG = 'bags/sample'
 PAGES = {
