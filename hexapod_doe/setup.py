@@ -38,6 +38,7 @@ setup(
             'shadow = hexapod_doe.shadow:main',
             'check_sensors = hexapod_doe.nodes.check_sensors_node:main',
             'campaign_status = hexapod_doe.campaign_status:main',
+            'export = hexapod_doe.export:main',
         ],
     },
 )
