@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -e -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help setup other-ros demo test test-slow lint type format bench bench-learner film clean clean-demo
+.PHONY: help setup other-ros demo check test test-slow lint type format bench bench-learner film clean clean-demo
 
 VENV ?= .venv
 PACKAGES := hexapod_sim hexapod_cpg hexapod_agent hexapod_doe
@@ -57,11 +57,14 @@ test: setup  ## run the tests, without the proofs that take minutes each
 test-slow: setup  ## run the slow proofs
 	@$(ENTER); python -m pytest -m slow $(PYTEST)
 
-lint: setup  ## check style
-	@$(ENTER); ruff check . && ruff format --check .
+check: setup lint type  ## style, types and the rules of the house: what CI runs first
+	@$(ENTER); python -m pytest -q tests/test_house.py tests/test_docs.py tests/test_packages.py
 
-type: setup  ## check types
-	@$(ENTER); mypy $(PACKAGES:%=-p %) $(ROS_PACKAGES:%=-p %)
+lint: $(VENV)/.ready  ## check style; asks for no workspace
+	@$(VENV)/bin/ruff check . && $(VENV)/bin/ruff format --check .
+
+type: $(VENV)/.ready  ## check types; asks for no workspace
+	@$(VENV)/bin/mypy $(PACKAGES:%=-p %) $(ROS_PACKAGES:%=-p %)
 
 format: setup  ## rewrite the code in the project's style
 	@$(ENTER); ruff check --fix-only . ; ruff format .

@@ -14,12 +14,14 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [
     *ROOT.glob('*.md'),
+    *ROOT.glob('.github/*.md'),
     *ROOT.glob('docs/*.md'),
     *ROOT.glob('bags/*.md'),
     *ROOT.glob('tests/data/**/*.md'),
     *ROOT.glob('ros_ws/src/*/*.md'),
     *ROOT.glob('ros_ws/src/hexapod_bringup/agents/*.md'),
 ]
+RECIPES = [*ROOT.glob('.github/workflows/*.yml'), *ROOT.glob('docker/*')]
 _LINK = re.compile(r'\]\(([^)\s]+)\)')
 _FENCE = re.compile(r'^```.*?^```$', re.MULTILINE | re.DOTALL)
 _HEADING = re.compile(r'^#+ (.*)$', re.MULTILINE)
@@ -65,7 +67,7 @@ def test_files_that_a_page_names_are_there(page: Path) -> None:
     assert missing == []
 
 
-@pytest.mark.parametrize('page', PAGES, ids=named)
+@pytest.mark.parametrize('page', [*PAGES, *RECIPES], ids=named)
 def test_commands_that_a_page_names_are_there(page: Path) -> None:
     for verb, package, name in set(_COMMAND.findall(page.read_text(encoding='utf-8'))):
         folder = ROOT / 'ros_ws/src' / package
