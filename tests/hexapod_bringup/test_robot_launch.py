@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from hexapod_sim.sensor_table import CHANNELS
 from ros2_mini.launch.expand import expand_launch_file
-from ros2_mini.launch.plan import ProcessSpec
+from ros2_mini.launch.supervisor import ProcessSpec
 
 LAUNCH = Path(__file__).resolve().parents[2] / 'ros_ws/src/hexapod_bringup/launch'
 # The pattern generator's state is no device's.

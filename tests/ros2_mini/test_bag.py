@@ -4,7 +4,6 @@
 import os
 import threading
 import time
-from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -173,29 +172,30 @@ def listener():
     node.destroy_node()
 
 
-@pytest.mark.graph
-def test_play_at_twice_the_pace_with_a_clock(bag, listener):
-    words = ['--topics', '/a', '--remap', '/a:=/a2', '-r', '2', '--clock', '20']
-    assert main(['bag', 'play', str(bag), '--start-offset', '0.3', *words]) == 0
+@pytest.mark.system
+def test_play_with_a_clock(bag, listener, start):
+    words = ['--topics', '/a', '--remap', '/a:=/a2', '-r', '2', '--clock']
+    process = start('bag', 'play', str(bag), '--start-offset', '0.3', *words)
+    process.communicate(timeout=60)
+    assert process.returncode == 0
     # /a has the messages 0, 2, ... 10, every 0.2 s; the first from 0.3 s on is number 4.
     assert wait_for(lambda: len(listener['/a2']) >= 4, 10.0)
     assert [message.data for message in listener['/a2']] == ['4', '6', '8', '10']
     ticks = [tick.clock.sec * 10**9 + tick.clock.nanosec - START for tick in listener['/clock']]
-    # 20 Hz of wall time at twice the pace: the recorded time goes on by 0.1 s a tick.
-    assert ticks[0] == 3 * PERIOD
-    assert {second - first for first, second in pairwise(ticks)} == {PERIOD}
-    assert ticks[-1] <= 10 * PERIOD
+    assert ticks == [4 * PERIOD, 6 * PERIOD, 8 * PERIOD, 10 * PERIOD]
 
 
-@pytest.mark.graph
+@pytest.mark.system
 @pytest.mark.parametrize(
     ('case', 'warning'),
     [
         ('b13_humble_range', '/hexapod/body/height is not played: sensor_msgs/Range has'),
-        ('b07_time_zero', 'nothing was recorded for 55.8 years: passed over; --start-offset 1760'),
+        ('b07_time_zero', 'nothing was recorded for 55.8 years: passed over; start:=1760'),
     ],
 )
-def test_what_nobody_could_read_and_jumps_are_told(case, warning, capfd):
-    assert main(['bag', 'play', str(CASES / case)]) == 0
-    (line,) = [line for line in capfd.readouterr().err.splitlines() if 'WARN' in line]
+def test_what_nobody_could_read_and_jumps_are_told(case, warning, start):
+    process = start('bag', 'play', str(CASES / case))
+    told = process.communicate(timeout=60)[0]
+    assert process.returncode == 0
+    (line,) = [line for line in told.splitlines() if 'WARN' in line]
     assert warning in line

@@ -37,7 +37,7 @@ SHOWN = """Arguments (pass arguments as '<name>:=<value>'):
 
     'x':*
         no description given
-        (default: LaunchConfig('who') + '-' + EnvVar('HOME') + '/a')
+        (default: LaunchConfig('who') + '-' + ThisLaunchFileDir() + '/a')
 
     'y':
         no description given
@@ -49,7 +49,7 @@ SHOWN = """Arguments (pass arguments as '<name>:=<value>'):
 
 def test_arguments_are_shown_as_the_launch_library_does(prefix, capsys):
     prefix.add_launch_file("""<arg name="who" default="world" description="Whom to greet"/>
-    <group unless="false"><arg name="x" default="$(var who)-$(env HOME)/a"/></group>
+    <group unless="false"><arg name="x" default="$(var who)-$(dirname)/a"/></group>
     <arg name="y" default=""/>""")
     assert main(['launch', '--show-args', 'demo', 'demo.launch.xml']) == 0
     assert capsys.readouterr().out == SHOWN

@@ -7,11 +7,11 @@ from ros2_mini.launch.document import ACTIONS, NESTED, RULES, read_launch_file
 
 
 def test_elements_know_their_line(prefix):
-    root = read_launch_file(prefix.add_launch_file('<group>\n<log message="x"/>\n</group>'))
+    root = read_launch_file(prefix.add_launch_file('<group>\n<arg name="x"/>\n</group>'))
     (group,) = root.children
-    (log,) = group.nested('log')
-    assert (log.line, log.attributes) == (3, {'message': 'x'})
-    assert log.where.endswith('demo.launch.xml:3: <log>')
+    (arg,) = group.nested('arg')
+    assert (arg.line, arg.attributes) == (3, {'name': 'x'})
+    assert arg.where.endswith('demo.launch.xml:3: <arg>')
 
 
 @pytest.mark.parametrize('tag', ACTIONS)
@@ -36,9 +36,8 @@ def test_nested_tags_take_none(parent: str, child: str, prefix):
 @pytest.mark.parametrize(
     ('body', 'message'),
     [
-        ('<nod/>', r':2: <nod> is not supported in <launch>; supported: arg, executable, group'),
-        ('<arg name="a"><node/></arg>', r'<node> is not supported in <arg>; supported: choice'),
-        ('<log message="a"><log/></log>', r'<log> is not supported in <log>; supported: nothing'),
+        ('<nod/>', r':2: <nod> is not supported in <launch>; supported: arg, group, include'),
+        ('<arg name="a"><node/></arg>', r'<node> is not supported in <arg>; supported: nothing'),
         (
             '<arg name="a" value="1"/>',
             r"<arg> has an attribute 'value' that is not supported; supported: default, desc",

@@ -4,19 +4,7 @@
 from ros2_mini.cli import main
 
 
-def test_executables(prefix, capsys):
-    path = prefix.add_executable('talker', 'exit 0')
-    (path.parent / 'notes.txt').touch()
-    (path.parent / '.hidden').mkdir()
-    assert main(['pkg', 'executables', 'demo']) == 0
-    assert main(['pkg', 'executables', 'demo', '--full-path']) == 0
-    assert capsys.readouterr().out == f'demo talker\n{path}\n'
-
-
-def test_executables_of_all_packages_and_prefix(prefix, capsys):
-    prefix.add_executable('talker', 'exit 0')
-    assert main(['pkg', 'executables']) == 0
-    assert 'demo talker' in capsys.readouterr().out.splitlines()
+def test_prefix(prefix, capsys):
     assert main(['pkg', 'prefix', 'demo']) == 0
     assert main(['pkg', 'prefix', '--share', 'demo']) == 0
     assert capsys.readouterr().out == f'{prefix.root}\n{prefix.share}\n'
@@ -28,7 +16,8 @@ def errors_of(words: list[str], capsys) -> str:
 
 
 def test_missing_things_are_named(prefix, capsys):
-    prefix.add_executable('talker', 'exit 0')
+    path = prefix.add_executable('talker', 'exit 0')
+    (path.parent / 'notes.txt').touch()
     assert errors_of(['pkg', 'prefix', 'nope'], capsys) == "Package 'nope' not found\n"
     assert errors_of(['run', 'nope', 'x'], capsys) == "Package 'nope' not found\n"
     expected = "No executable found: package 'demo' has no 'x'; it has: talker\n"

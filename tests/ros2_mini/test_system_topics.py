@@ -43,18 +43,3 @@ def test_echo(output, error):
     assert message.startswith("Invalid field 'positio': ")
     missing = ('topic', 'echo', '/nope', '--spin-time', '0.1')
     assert error(*missing) == 'Could not determine the type for the passed topic\n'
-
-
-def test_publish(output, error, sample):
-    found = output('topic', 'pub', '--once', '/listen', 'std_msgs/msg/String', 'data: hi')
-    assert found.endswith(
-        "publisher: beginning loop\npublishing #1: std_msgs.msg.String(data='hi')\n\n"
-    )
-    assert sample.stdout.readline() == 'heard hi\n'
-    message = error('topic', 'pub', '--once', '/listen', 'std_msgs/msg/String', 'text: hi')
-    assert message.startswith("Failed to populate field: 'text' is 'hi', expected a field of")
-
-
-def test_publish_waits_no_longer_than_told(error):
-    words = ('topic', 'pub', '-1', '--max-wait-time-secs', '0.2', '/nobody', 'std_msgs/Bool')
-    assert error(*words).startswith('Timed out waiting for subscribers: Expected 1')

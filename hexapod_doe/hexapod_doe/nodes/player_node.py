@@ -42,6 +42,10 @@ PARAMETERS = (
     ),
     Parameter('paused', False, 'Hold before the first message.'),
     Parameter(
+        'delay', 0.0, 'Time for subscribers to find the player in.', unit='s', range=(0.0, 1e6)
+    ),
+    Parameter('clock', True, "Publish /clock, in place of the bag's own."),
+    Parameter(
         'topics', '', 'Names to play, or their ends, separated by spaces; none for all of them.'
     ),
 )
@@ -50,9 +54,9 @@ PARAMETERS = (
 class PlayerNode(Node):
     """Publishes a bag's messages when they are due, and `/clock` after those of each instant.
 
-    A `/clock` in the bag is left out: there is one clock, the player's. So is, with a warning, a
-    topic of a type that is not installed, or that was recorded by another definition than the
-    installed one: its subscribers would read wrong numbers.
+    Then a `/clock` in the bag is left out: there is one clock, the player's. So is, with a
+    warning, a topic of a type that is not installed, or that was recorded by another definition
+    than the installed one: its subscribers would read wrong numbers.
     """
 
     def __init__(self, parameter_overrides: Sequence[RclpyParameter] = ()) -> None:
@@ -73,7 +77,10 @@ class PlayerNode(Node):
         self._selection = self._selected()
         for line in self._selection.warnings():
             self.get_logger().warning(line)
-        self._clock_publisher = self.create_publisher(Clock, CLOCK_TOPIC, 10)
+        has_clock = bool(self._value('clock'))
+        self._clock_publisher = (
+            self.create_publisher(Clock, CLOCK_TOPIC, 10) if has_clock else None
+        )
         self._bag_publishers = {
             name: self.create_publisher(
                 message_class(self._bag.types[name]), name, replay_qos(self._bag.qos[name])
@@ -94,7 +101,7 @@ class PlayerNode(Node):
         self.create_service(Trigger, '~/pause', self._on_pause)
         self.create_service(Trigger, '~/resume', self._on_resume)
         self.create_service(Trigger, '~/step', self._on_step)
-        self._timer: Timer = call_later(self, 0.0, self._on_due)
+        self._timer: Timer = call_later(self, float(self._value('delay')), self._on_due)
         Diagnostics(self, self._health)
 
     def _value(self, name: str) -> Any:
@@ -108,8 +115,9 @@ class PlayerNode(Node):
         """
         names = str(self._value('topics')).split() or list(self._bag.types)
         chosen = [self._bag.topic(name) for name in names]
-        wanted = [name for name in chosen if self._bag.types[name] != CLOCK_TYPE]
-        return select(self._bag, wanted, message_class)
+        if self._value('clock'):
+            chosen = [name for name in chosen if self._bag.types[name] != CLOCK_TYPE]
+        return select(self._bag, chosen, message_class)
 
     def _start_ns(self) -> int | None:
         """Return the recorded time to begin at; None for the first message, whatever its time."""
@@ -146,7 +154,8 @@ class PlayerNode(Node):
     def _publish(self, frame: Frame) -> None:
         for message in frame.messages:
             self._bag_publishers[message.topic].publish(message.data)
-        self._clock_publisher.publish(Clock(clock=time_message(frame.time_ns)))
+        if self._clock_publisher is not None:
+            self._clock_publisher.publish(Clock(clock=time_message(frame.time_ns)))
         self._played += len(frame.messages)
         self._now_ns = frame.time_ns
         if self._playback.finished:

@@ -3,8 +3,9 @@
 
 """The command line: which commands and verbs there are, and what their outcomes exit with.
 
-A verb is a module of `ros2_mini.verbs` with `add_arguments(parser)` and `main(args) -> int`. Only
-the one that is asked for gets imported, so that `ros2 pkg prefix` does not wait for rclpy.
+A command is a module of `ros2_mini.verbs` whose table `VERBS` has for each verb what declares its
+arguments and what runs it. Only the one that is asked for gets imported, so that `ros2 pkg prefix`
+does not wait for rclpy.
 """
 
 import argparse
@@ -34,25 +35,13 @@ VERBS: dict[str, dict[str, str]] = {
     },
     'param': {
         'describe': 'Show descriptive information about declared parameters',
-        'dump': 'Show all of the parameters of a node in a YAML file format',
         'get': 'Get parameter',
-        'list': 'Output a list of available parameters',
         'set': 'Set parameter',
     },
-    'pkg': {
-        'executables': 'Output a list of package specific executables',
-        'prefix': 'Output the prefix path of a package',
-    },
-    'service': {
-        'call': 'Call a service',
-        'list': 'Output a list of available services',
-    },
+    'pkg': {'prefix': 'Output the prefix path of a package'},
     'topic': {
         'echo': 'Output messages from a topic',
-        'hz': 'Print the average publishing rate to screen',
-        'info': 'Print information about a topic',
         'list': 'Output a list of available topics',
-        'pub': 'Publish a message to a topic',
     },
 }
 COMMANDS: dict[str, str] = {
@@ -61,11 +50,12 @@ COMMANDS: dict[str, str] = {
 }
 
 
-def _use(parser: argparse.ArgumentParser, *path: str) -> None:
-    """Let `parser` take the arguments of the verb at `path` and call it."""
-    verb = importlib.import_module('.'.join(('ros2_mini.verbs', *path)))
-    verb.add_arguments(parser)
-    parser.set_defaults(main=verb.main)
+def _use(parser: argparse.ArgumentParser, command: str, verb: str) -> None:
+    """Let `parser` take the arguments of a verb, or of a command without verbs, and call it."""
+    module = importlib.import_module(f'ros2_mini.verbs.{command}')
+    add_arguments, main = module.VERBS[verb]
+    add_arguments(parser)
+    parser.set_defaults(main=main)
 
 
 def build_parser(argv: Sequence[str]) -> argparse.ArgumentParser:
@@ -81,7 +71,7 @@ def build_parser(argv: Sequence[str]) -> argparse.ArgumentParser:
     for command, text in COMMANDS.items():
         command_parser = commands.add_parser(command, help=text)
         if command == words[0]:
-            _use(command_parser, command)
+            _use(command_parser, command, '')
     for command, verbs in VERBS.items():
         text = f'Various {command} related sub-commands'
         command_parser = commands.add_parser(command, help=text, description=text)

@@ -27,26 +27,15 @@ _DISCOVERY_TOPIC = 'ros_discovery_info'  # every context has one publisher of it
 _UNKNOWN_NODE = '_NODE_NAME_UNKNOWN_'
 
 
-def add_arguments(parser: argparse.ArgumentParser, daemon: bool = True) -> None:
-    """Declare the arguments of verbs that look at the graph.
-
-    Args:
-        parser: Of the verb.
-        daemon: Whether the original asks its daemon, unless it is told not to.
-    """
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments of verbs that look at the graph."""
     parser.add_argument(
         '--spin-time',
         type=float,
         default=DEFAULT_LIMIT,
         help='Longest time to wait for discovery, in seconds (default: %(default)s)',
     )
-    parser.add_argument(
-        '-s', '--use-sim-time', action='store_true', help='Enable ROS simulation time'
-    )
-    if daemon:
-        parser.add_argument(
-            '--no-daemon', action='store_true', help='Accepted; there is no daemon'
-        )
+    parser.add_argument('--no-daemon', action='store_true', help='Accepted; there is no daemon')
 
 
 def wait_for(look: Callable[[], Found], limit: float) -> Found:

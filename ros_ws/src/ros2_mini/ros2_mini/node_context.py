@@ -6,7 +6,7 @@
 import contextlib
 import os
 import signal
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from importlib.resources import as_file, files
 
 import rclpy
@@ -14,43 +14,24 @@ from hexapod_node.environment import provide_log_directory
 from hexapod_node.upstream import RCLError
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
-from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 
 from ros2_mini.discovery import DEFAULT_LIMIT, wait_until_settled
 
-NODE_NAME_PREFIX = '_ros2cli'
 _PROFILES = 'FASTRTPS_DEFAULT_PROFILES_FILE'
 
 
 @contextlib.contextmanager
-def open_node(
-    name: str | None = None,
-    *,
-    use_sim_time: bool = False,
-    cli_args: Sequence[str] = (),
-    signals: SignalHandlerOptions = SignalHandlerOptions.ALL,
-) -> Iterator[Node]:
+def open_node() -> Iterator[Node]:
     """Yield a hidden node, and take it down again.
-
-    Args:
-        name: Name of the node; a hidden one with the process id when None.
-        use_sim_time: Whether the node's clock follows `/clock`.
-        cli_args: ROS arguments of the node, such as remappings.
-        signals: Which signals shut the node down.
 
     Raises:
         SystemExit: With the number of SIGTERM, if that has ended the node.
         EnvironmentVariableError: ROS's logs cannot be written.
     """
     provide_log_directory()
-    rclpy.init(args=[], signal_handler_options=signals)
-    node = rclpy.create_node(
-        name or f'{NODE_NAME_PREFIX}_{os.getpid()}',
-        cli_args=list(cli_args),
-        start_parameter_services=False,
-        parameter_overrides=[Parameter('use_sim_time', value=use_sim_time)],
-    )
+    rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.ALL)
+    node = rclpy.create_node(f'_ros2cli_{os.getpid()}', start_parameter_services=False)
     try:
         yield node
         if not rclpy.ok():

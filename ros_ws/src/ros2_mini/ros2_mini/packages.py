@@ -6,18 +6,9 @@
 import os
 from pathlib import Path
 
-from ament_index_python import (
-    PackageNotFoundError,
-    get_package_prefix,
-    get_packages_with_prefixes,
-)
+from ament_index_python import PackageNotFoundError, get_package_prefix
 
 from ros2_mini.errors import CommandError
-
-
-def package_names() -> list[str]:
-    """Return the names of all installed packages, sorted."""
-    return sorted(get_packages_with_prefixes())
 
 
 def package_prefix(package: str) -> Path:
@@ -37,23 +28,17 @@ def package_share(package: str) -> Path:
     return package_prefix(package) / 'share' / package
 
 
-def package_executables(package: str) -> list[Path]:
-    """Return the paths of a package's executables, sorted."""
-    base = package_prefix(package) / 'lib' / package
-    found = []
-    for folder, subfolders, names in os.walk(base):
-        subfolders[:] = [name for name in subfolders if not name.startswith('.')]
-        found += [Path(folder, name) for name in names]
-    return sorted(path for path in found if os.access(path, os.X_OK))
-
-
 def executable_path(package: str, executable: str) -> Path:
     """Return the path of one executable of a package.
 
     Raises:
         CommandError: If the package is not installed, or has no such executable, or several.
     """
-    paths = package_executables(package)
+    paths = sorted(
+        path
+        for path in (package_prefix(package) / 'lib' / package).rglob('*')
+        if path.is_file() and os.access(path, os.X_OK)
+    )
     matches = [path for path in paths if path.name == executable]
     if not matches:
         known = ', '.join(path.name for path in paths) or 'none'

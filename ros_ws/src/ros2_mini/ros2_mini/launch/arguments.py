@@ -9,9 +9,8 @@ from pathlib import Path
 
 from ros2_mini.errors import CommandError
 from ros2_mini.launch.document import Element, read_launch_file
-from ros2_mini.launch.functions import Context, evaluate
 from ros2_mini.launch.scope import template_of
-from ros2_mini.launch.substitutions import Substitution, SubstitutionError, Template
+from ros2_mini.launch.substitutions import Substitution, SubstitutionError, Template, evaluate
 
 
 def parse_launch_arguments(words: Sequence[str]) -> dict[str, str]:
@@ -72,9 +71,6 @@ def _collect(element: Element, conditional: bool, found: dict[str, Declaration])
 
 def _declaration(arg: Element, conditional: bool) -> Declaration:
     description = arg.attributes.get('description', 'no description given')
-    choices = [choice.attributes['value'] for choice in arg.nested('choice')]
-    if choices:
-        description += f'. Valid choices are: {choices}'
     default = template_of(arg, 'default') if 'default' in arg.attributes else None
     return Declaration(arg.attributes['name'], description, default, conditional)
 
@@ -82,16 +78,13 @@ def _declaration(arg: Element, conditional: bool) -> Declaration:
 def _fixed_path(include: Element) -> Path | None:
     """Return the file of an `<include>` if it depends on no launch configuration."""
     try:
-        return Path(evaluate(template_of(include, 'file'), Context({}, {}, include.file)))
+        return Path(evaluate(template_of(include, 'file'), {}, include.file))
     except SubstitutionError:
         return None
 
 
 _CLASSES = {
     'dirname': 'ThisLaunchFileDir',
-    'env': 'EnvVar',
-    'filename': 'ThisLaunchFile',
-    'find-pkg-prefix': 'FindPackagePrefix',
     'find-pkg-share': 'FindPackageShare',
     'var': 'LaunchConfig',
 }

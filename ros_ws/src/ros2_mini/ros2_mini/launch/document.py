@@ -41,40 +41,29 @@ class Rule:
 
 
 ACTIONS = (
-    'arg', 'executable', 'group', 'include', 'let', 'log', 'node', 'push_ros_namespace',
-    'push-ros-namespace', 'set_env', 'shutdown', 'unset_env',
-)  # fmt: skip
-_PROCESS = (
-    'cwd', 'launch-prefix', 'name', 'on_exit', 'output', 'respawn', 'respawn_delay',
-    'respawn_max_retries', 'sigkill_timeout', 'sigterm_timeout',
-)  # fmt: skip
+    'arg',
+    'group',
+    'include',
+    'node',
+    'push_ros_namespace',
+    'push-ros-namespace',
+    'set_env',
+)
 _CONDITION = ('if', 'unless')
 
 RULES: dict[str, Rule] = {
     'launch': Rule(tags=ACTIONS),
-    'arg': Rule(('name',), ('default', 'description'), ('choice',)),
-    'executable': Rule(('cmd',), (*_PROCESS, 'shell'), ('env',)),
-    'group': Rule((), ('scoped',), ACTIONS),
+    'arg': Rule(('name',), ('default', 'description')),
+    'group': Rule(tags=ACTIONS),
     'include': Rule(('file',), (), ('arg',)),
-    'let': Rule(('name', 'value')),
-    'log': Rule(('message',)),
-    'node': Rule(
-        ('pkg', 'exec'),
-        (*_PROCESS, 'args', 'exec_name', 'namespace', 'ros_args'),
-        ('env', 'param', 'remap'),
-    ),
+    'node': Rule(('pkg', 'exec'), ('name', 'namespace', 'on_exit', 'output'), ('param', 'remap')),
     'push_ros_namespace': Rule(('namespace',)),
     'push-ros-namespace': Rule(('namespace',)),
     'set_env': Rule(('name', 'value')),
-    'shutdown': Rule((), ('reason',)),
-    'unset_env': Rule(('name',)),
 }
 # Tags that are no actions, by the tag they stand in; no condition may stand on them.
 NESTED: dict[tuple[str, str], Rule] = {
-    ('arg', 'choice'): Rule(('value',)),
-    ('executable', 'env'): Rule(('name', 'value')),
     ('include', 'arg'): Rule(('name', 'value')),
-    ('node', 'env'): Rule(('name', 'value')),
     ('node', 'param'): Rule((), ('from', 'name', 'type', 'value')),
     ('node', 'remap'): Rule(('from', 'to')),
 }

@@ -8,9 +8,10 @@ from pathlib import Path
 
 from ros2_mini.errors import CommandError
 from ros2_mini.launch.document import Element, read_launch_file
-from ros2_mini.launch.node_command import executable_process, node_process, prefixed
-from ros2_mini.launch.plan import Plan
+from ros2_mini.launch.parameters import parameter_arguments
 from ros2_mini.launch.scope import Scope
+from ros2_mini.launch.supervisor import OUTPUTS, Plan, ProcessSpec
+from ros2_mini.packages import executable_path
 
 
 def expand_launch_file(
@@ -65,33 +66,18 @@ def _arg(element: Element, scope: Scope, plan: Plan) -> None:
                 f"provided, expected '{name}:=<value>'"
             )
         scope.configurations[name] = default
-    choices = [choice.attributes['value'] for choice in element.nested('choice')]
-    if choices and scope.configurations[name] not in choices:
-        raise CommandError(
-            f"{element.where}: argument '{name}' has the value '{scope.configurations[name]}', "
-            f'expected one of {choices}'
-        )
-
-
-def _let(element: Element, scope: Scope, plan: Plan) -> None:
-    scope.configurations[scope.text(element, 'name')] = scope.text(element, 'value')
 
 
 def _set_env(element: Element, scope: Scope, plan: Plan) -> None:
     scope.environment[scope.text(element, 'name')] = scope.text(element, 'value')
 
 
-def _unset_env(element: Element, scope: Scope, plan: Plan) -> None:
-    scope.environment.pop(scope.text(element, 'name'), None)
-
-
 def _group(element: Element, scope: Scope, plan: Plan) -> None:
-    inner = scope.copy() if scope.flag(element, 'scoped', True) else scope
-    _expand_all(element.children, inner, plan)
+    _expand_all(element.children, scope.copy(), plan)
 
 
 def _push_ros_namespace(element: Element, scope: Scope, plan: Plan) -> None:
-    scope.namespace = prefixed(scope.namespace, scope.text(element, 'namespace'))
+    scope.namespace = scope.prefixed(scope.text(element, 'namespace'))
 
 
 def _include(element: Element, scope: Scope, plan: Plan) -> None:
@@ -105,32 +91,52 @@ def _include(element: Element, scope: Scope, plan: Plan) -> None:
 
 
 def _node(element: Element, scope: Scope, plan: Plan) -> None:
-    plan.processes.append(node_process(scope, element, len(plan.processes) + 1))
+    try:
+        path = executable_path(scope.text(element, 'pkg'), scope.text(element, 'exec'))
+    except CommandError as error:
+        raise CommandError(f'{element.where}: {error}') from error
+    command = [str(path), '--ros-args', *_names(scope, element)]
+    for remap in element.nested('remap'):
+        command += ['-r', f'{scope.text(remap, "from")}:={scope.text(remap, "to")}']
+    output = scope.text(element, 'output', 'log')
+    on_exit = scope.text(element, 'on_exit', None)
+    if output not in OUTPUTS:
+        raise CommandError(
+            f"{element.where} has output '{output}'; supported: {', '.join(OUTPUTS)}"
+        )
+    if on_exit not in (None, 'shutdown'):
+        raise CommandError(f"{element.where} has on_exit '{on_exit}'; supported: shutdown")
+    plan.processes.append(
+        ProcessSpec(
+            name=f'{path.name}-{len(plan.processes) + 1}',
+            command=tuple(command),
+            environment=dict(scope.environment),
+            output=output,
+            shutdown_on_exit=on_exit == 'shutdown',
+        )
+    )
 
 
-def _executable(element: Element, scope: Scope, plan: Plan) -> None:
-    plan.processes.append(executable_process(scope, element, len(plan.processes) + 1))
-
-
-def _log(element: Element, scope: Scope, plan: Plan) -> None:
-    plan.messages.append(scope.text(element, 'message'))
-
-
-def _shutdown(element: Element, scope: Scope, plan: Plan) -> None:
-    plan.shutdown = scope.text(element, 'reason', 'reason not given')
+def _names(scope: Scope, node: Element) -> list[str]:
+    """Return the arguments that set a node's name, namespace and parameters."""
+    name = scope.text(node, 'name', None)
+    namespace = scope.prefixed(scope.text(node, 'namespace', None))
+    arguments = []
+    if name is not None:
+        arguments += ['-r', f'__node:={name}']
+    if namespace is not None:
+        arguments += ['-r', f'__ns:={namespace}']
+    known = name is not None and namespace is not None
+    full_name = f'{(namespace or "").rstrip("/")}/{name}' if known else '/**'
+    return arguments + parameter_arguments(scope, node, full_name)
 
 
 _ACTIONS: dict[str, Callable[[Element, Scope, Plan], None]] = {
     'arg': _arg,
-    'executable': _executable,
     'group': _group,
     'include': _include,
-    'let': _let,
-    'log': _log,
     'node': _node,
     'push_ros_namespace': _push_ros_namespace,
     'push-ros-namespace': _push_ros_namespace,
     'set_env': _set_env,
-    'shutdown': _shutdown,
-    'unset_env': _unset_env,
 }

@@ -16,13 +16,7 @@ from ros2_mini.launch.scope import Scope
 Scalar: TypeAlias = bool | int | float | str
 ParameterValue: TypeAlias = Scalar | list[Scalar]
 
-TYPES: dict[str, type[Scalar] | None] = {
-    'yaml': None,
-    'bool': bool,
-    'int': int,
-    'float': float,
-    'str': str,
-}
+TYPES = ('yaml', 'str')
 
 
 def parameter_arguments(scope: Scope, node: Element, node_name: str) -> list[str]:
@@ -72,25 +66,19 @@ def parameter_value(text: str, type_name: str = 'yaml') -> ParameterValue:
 
     Args:
         text: The value as written, substitutions made.
-        type_name: A key of TYPES; `yaml` lets the text decide, by the rules of YAML 1.1.
+        type_name: One of TYPES; `yaml` lets the text decide, by the rules of YAML 1.1.
 
     Raises:
         ValueError: If the text is no value of that type, or of a type that parameters lack.
     """
     if type_name not in TYPES:
         raise ValueError(f"parameter type '{type_name}' is unknown, expected {', '.join(TYPES)}")
-    kind = TYPES[type_name]
-    if kind is str:
+    if type_name == 'str' or not text:
         return text
     try:
-        value = yaml.safe_load(text) if text else text
+        value = yaml.safe_load(text)
     except yaml.YAMLError as error:
         raise ValueError(f'value \'{text}\' is no YAML; give a text with type="str"') from error
-    return _checked(value, text) if kind is None else _as(kind, value, text)
-
-
-def _checked(value: object, text: str) -> ParameterValue:
-    """Return a value read by the rules of YAML if parameters can hold it."""
     if isinstance(value, list):
         kinds = {type(item) for item in value}
         if len(kinds) != 1 or not isinstance(value[0], bool | int | float | str):
@@ -98,15 +86,4 @@ def _checked(value: object, text: str) -> ParameterValue:
         return value
     if not isinstance(value, bool | int | float | str):
         raise ValueError(f"value '{text}' is no bool, int, float, str or list of these")
-    return value
-
-
-def _as(kind: type[Scalar], value: object, text: str) -> Scalar:
-    """Return a value as `kind`; an int passes for a float, and 1 and 0 for a bool."""
-    if kind is float and type(value) in (int, float):
-        return float(str(value))
-    if kind is bool and value in (0, 1):
-        return bool(value)
-    if not isinstance(value, kind) or isinstance(value, bool) is not (kind is bool):
-        raise ValueError(f"value '{text}' is no {kind.__name__}")
     return value

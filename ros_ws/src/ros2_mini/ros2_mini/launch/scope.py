@@ -3,14 +3,13 @@
 
 """The variables that an action of a launch file sees, and how its attributes are evaluated."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import overload
 
 from ros2_mini.errors import CommandError
 from ros2_mini.launch.document import Element
-from ros2_mini.launch.functions import Context, as_bool, evaluate
-from ros2_mini.launch.substitutions import SubstitutionError, Template, parse
+from ros2_mini.launch.substitutions import SubstitutionError, Template, as_bool, evaluate, parse
 
 
 @dataclass
@@ -26,30 +25,16 @@ class Scope:
     """Where parameters given in the launch file are written for the nodes to read."""
     namespace: str | None = None
     """Absolute namespace pushed so far; None when there is none."""
-    files: tuple[Path, ...] = field(default=())
+    files: tuple[Path, ...] = ()
     """The files being expanded, outermost first."""
 
     def copy(self) -> 'Scope':
         """Return a scope whose changes do not reach this one."""
-        return Scope(
-            dict(self.configurations),
-            dict(self.environment),
-            self.parameter_directory,
-            self.namespace,
-            self.files,
+        return replace(
+            self,
+            configurations=dict(self.configurations),
+            environment=dict(self.environment),
         )
-
-    def evaluate(self, element: Element, template: Template) -> str:
-        """Return the text of a template that stands on `element`.
-
-        Raises:
-            CommandError: If a substitution in it has no value; the message says where it stands.
-        """
-        context = Context(self.configurations, self.environment, element.file)
-        try:
-            return evaluate(template, context)
-        except SubstitutionError as error:
-            raise CommandError(f'{element.where}: {error}') from error
 
     @overload
     def text(self, element: Element, name: str) -> str: ...
@@ -58,30 +43,36 @@ class Scope:
     @overload
     def text(self, element: Element, name: str, default: None) -> str | None: ...
     def text(self, element: Element, name: str, default: str | None = '') -> str | None:
-        """Return an attribute with its substitutions made, or `default` where it is absent."""
+        """Return an attribute with its substitutions made, or `default` where it is absent.
+
+        Raises:
+            CommandError: If a substitution in it has no value; the message says where it stands.
+        """
         if name not in element.attributes:
             return default
-        return self.evaluate(element, template_of(element, name))
-
-    def flag(self, element: Element, name: str, default: bool) -> bool:
-        """Return an attribute that says true or false."""
-        text = self.text(element, name, str(default))
+        template = template_of(element, name)
         try:
-            return as_bool(text)
+            return evaluate(template, self.configurations, element.file)
         except SubstitutionError as error:
-            raise CommandError(f'{element.where} {name}: {error}') from error
-
-    def number(self, element: Element, name: str, default: float) -> float:
-        """Return an attribute that is a number of seconds or of times."""
-        text = self.text(element, name, str(default))
-        try:
-            return float(text)
-        except ValueError as error:
-            raise CommandError(f"{element.where} {name}: '{text}' is no number") from error
+            raise CommandError(f'{element.where}: {error}') from error
 
     def wants(self, element: Element) -> bool:
         """Say whether the element's `if` or `unless` lets it act."""
-        return self.flag(element, 'if', True) and not self.flag(element, 'unless', False)
+        return self._flag(element, 'if', True) and not self._flag(element, 'unless', False)
+
+    def _flag(self, element: Element, name: str, default: bool) -> bool:
+        try:
+            return as_bool(self.text(element, name, str(default)))
+        except SubstitutionError as error:
+            raise CommandError(f'{element.where} {name}: {error}') from error
+
+    def prefixed(self, namespace: str | None) -> str | None:
+        """Return the absolute namespace that `namespace` means here; None for neither."""
+        if namespace is None:
+            return self.namespace
+        if not namespace.startswith('/'):
+            namespace = f'{(self.namespace or "").rstrip("/")}/{namespace}'
+        return namespace.rstrip('/') or '/'
 
 
 def template_of(element: Element, name: str) -> Template:

@@ -1,4 +1,4 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""One module per verb, with `add_arguments(parser)` and `main(args) -> int`."""
+"""The commands, a module each, imported when the command line names it."""

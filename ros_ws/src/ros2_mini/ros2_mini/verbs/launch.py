@@ -19,23 +19,17 @@ from ros2_mini.errors import CommandError
 from ros2_mini.launch.arguments import declarations, parse_launch_arguments
 from ros2_mini.launch.expand import expand_launch_file
 from ros2_mini.launch.log import LaunchLog, make_log_directory
-from ros2_mini.launch.plan import Plan
-from ros2_mini.launch.supervisor import Supervisor
+from ros2_mini.launch.supervisor import Plan, Supervisor
 from ros2_mini.packages import find_in_share
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments of `ros2 launch`."""
+def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '-n', '--noninteractive', action='store_true', help='Accepted; it makes no difference here'
     )
     parser.add_argument(
         '-s', '--show-args', '--show-arguments', action='store_true',
         help='Show arguments that may be given to the launch file',
-    )  # fmt: skip
-    parser.add_argument(
-        '-a', '--show-all-subprocesses-output', action='store_true',
-        help="Show all launched subprocesses' output, whatever the launch file says",
     )  # fmt: skip
     parser.add_argument(
         'package_name', help='Name of the ROS package which contains the launch file, or a file'
@@ -47,14 +41,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
-def main(args: argparse.Namespace) -> int:
+def _main(args: argparse.Namespace) -> int:
     """Run a launch file, or show its arguments."""
     path, words = _launch_file(args)
     if args.show_args:
         _show_arguments(path)
         return 0
-    if args.show_all_subprocesses_output:
-        os.environ['OVERRIDE_LAUNCH_PROCESS_OUTPUT'] = 'both'
     arguments = parse_launch_arguments(words)
     with tempfile.TemporaryDirectory(prefix='launch_') as parameter_directory:
         plan = expand_launch_file(path, arguments, os.environ, Path(parameter_directory))
@@ -93,3 +85,6 @@ def _run(plan: Plan, undeclared: list[str]) -> int:
         for name in undeclared:
             log.say('WARNING', 'launch', f"no launch file declares the argument '{name}'")
         return asyncio.run(Supervisor(plan, log).run())
+
+
+VERBS = {'': (_arguments, _main)}

@@ -15,8 +15,7 @@ from ros2_mini.errors import CommandError
 from ros2_mini.packages import executable_path
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments of `ros2 run`."""
+def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--prefix',
         default='',
@@ -30,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def main(args: argparse.Namespace) -> int:
+def _run(args: argparse.Namespace) -> int:
     """Replace this process by the executable; return only if that is impossible."""
     path = executable_path(args.package_name, args.executable_name)
     command = [*shlex.split(args.prefix), str(path), *args.argv]
@@ -38,3 +37,6 @@ def main(args: argparse.Namespace) -> int:
         os.execvp(command[0], command)
     except OSError as error:
         raise CommandError(f"cannot run '{command[0]}': {error.strerror}") from error
+
+
+VERBS = {'': (_arguments, _run)}
