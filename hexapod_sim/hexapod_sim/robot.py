@@ -97,9 +97,6 @@ LEG_UPPER = np.array([0.9, 1.2, 1.2])
 JOINT_LOWER = np.tile(LEG_LOWER, len(LEGS))
 JOINT_UPPER = np.tile(LEG_UPPER, len(LEGS))
 
-# Sliding friction of a rubber foot on a hard floor.
-FLOOR_FRICTION = 0.9
-
 # Standing pose [rad] per leg. Hip zero: the leg points along its splay direction. Knee zero: the
 # femur is level, positive raises the foot. Ankle zero: the tibia is square to the femur (straight
 # down under a level femur), positive swings it outwards and up.

@@ -38,7 +38,7 @@ def foot_forces(wrench: Numbers) -> Numbers:
     """Return normal and friction forces of the feet from their force vectors.
 
     Args:
-        wrench: Force of the floor on each foot (6, 3) [N], z along the floor's normal.
+        wrench: Force of the ground on each foot (6, 3) [N], z along the normal of a level floor.
 
     Returns:
         Six normal forces, then six friction magnitudes (12,) [N].
@@ -61,13 +61,13 @@ def _distance(ray: Numbers) -> Numbers:
 
 
 def _force(feet: Numbers) -> Numbers:
-    """Force of the floor on each foot (6, 3) [N], axes parallel to odom, z up."""
+    """Force of the ground on each foot (6, 3) [N], axes parallel to odom, z up."""
     return feet.reshape(-1, 4)[:, 1:].copy()
 
 
 def _contact(feet: Numbers) -> Numbers:
-    """1 where a foot touches the floor, else 0 (6,)."""
-    return feet.reshape(-1, 4)[:, 0].copy()
+    """1 where a foot touches the ground, in however many places, else 0 (6,)."""
+    return np.minimum(feet.reshape(-1, 4)[:, 0], 1.0)
 
 
 def _joints(kind: str) -> tuple[str, ...]:

@@ -1,12 +1,11 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The robot on its floor: MuJoCo physics advanced one control period at a time, with queries."""
+"""The robot on its ground: MuJoCo physics advanced one control period at a time, with queries."""
 
 import copy
 import math
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import mujoco
@@ -14,8 +13,8 @@ import numpy as np
 
 from hexapod_sim import robot
 from hexapod_sim.sensor_table import MEASURED
+from hexapod_sim.world import World
 
-_MODEL_PATH = Path(__file__).with_name('hexapod.xml')
 _KEYFRAME = 'standing'
 # The servos give under the weight and the feet creep outwards: after this many control periods
 # (10 s, 30 ms of computing) nothing moves faster than 1e-5 m/s or rad/s.
@@ -34,13 +33,20 @@ class Simulation:
     """Physics of one hexapod; a copy, by `copy.deepcopy` or pickle, goes on to the last bit.
 
     Attributes:
-        model: The compiled hexapod.xml.
+        world: What it is built of.
+        model: The compiled hexapod.xml on the ground of its scene.
         data: State of the model; sensor readings are those at the end of the last period.
         sensor_blocks: Where the sensors of each reading lie in ``data.sensordata``.
     """
 
-    def __init__(self) -> None:
-        model = mujoco.MjModel.from_xml_path(str(_MODEL_PATH))
+    def __init__(self, world: World | None = None) -> None:
+        """Build the model, and let the robot stand.
+
+        Args:
+            world: What it is built of; article.yaml's by default.
+        """
+        self.world = world or World.of_article()
+        model, self._scene = self.world.build()
         self.sensor_blocks = _locate_blocks(model)
         self._flags_with_sensors = model.opt.disableflags
         self._steps_per_target = whole_ratio(robot.TARGET_PERIOD_NS, robot.PHYSICS_STEP_NS)
@@ -73,7 +79,7 @@ class Simulation:
         self._bind(model, data)
 
     def reset(self, y: float, yaw: float = 0.0) -> None:
-        """Stand the robot still on the floor at (0, y) of odom, heading ``yaw``.
+        """Stand the robot still on the flat run-up at (0, y) of odom, heading ``yaw``.
 
         Everything that MuJoCo carries from step to step is cleared first, so that what follows
         equals, to the last bit, what follows in a new simulation.
@@ -122,6 +128,10 @@ class Simulation:
         self.data.mocap_pos[0, 1] = y
         # What is drawn is the site, which would follow with the next control period only.
         self.data.site('goal_line').xpos[1] = y
+
+    def ground(self, x: float, y: float) -> float:
+        """Return the height of the ground at a place of odom [m]."""
+        return float(self._scene.height(x, y))
 
     @property
     def position(self) -> np.ndarray:

@@ -16,6 +16,7 @@ from hexapod_sim.quality import Qualities
 from hexapod_sim.sensors import Sensors
 from hexapod_sim.simulation import Simulation, SimulationDivergedError
 from hexapod_sim.sums import ordered_sum
+from hexapod_sim.world import World
 
 _PERIOD_S = robot.CONTROL_PERIOD_NS * 1e-9
 TERM_NAMES = ('velocity', 'closeness', 'orientation', 'height', 'alive')
@@ -73,14 +74,14 @@ class TaskConfig:
     yaw_share: _Share
     """How much of the squared yaw enters the orientation penalty: 1 as roll and pitch, 0 none."""
     walking_height: _Scale
-    """Mean height of base_link in the constant gait, measured [m]."""
+    """Mean height of base_link above the ground in the constant gait, measured [m]."""
     height_scale: _Scale
     """Share of the walking height whose error costs one."""
 
     max_tilt: _Angle
     """Roll or pitch beyond which the robot counts as flipped [rad]."""
     min_height: _Place
-    """Height of base_link under which the robot counts as collapsed [m]."""
+    """Height of base_link above the ground beneath, below which the robot has collapsed [m]."""
     max_offset: _Distance
     """Distance from the line beyond which the robot counts as strayed [m]."""
 
@@ -88,6 +89,11 @@ class TaskConfig:
     def of_article(cls, **changes: Any) -> 'TaskConfig':
         """Return the task of article.yaml, with some values changed."""
         return cls(**section('task') | changes)
+
+    @property
+    def farthest(self) -> float:
+        """Greatest |y| that the line or a start may have [m]."""
+        return abs(self.line_y) + abs(self.line_jump) + self.start_offset
 
     def __post_init__(self) -> None:
         """Refuse a period that no count of control periods makes.
@@ -176,7 +182,12 @@ def failure_cause(
 
 
 def judge(
-    step: int, pose: Sequence[float], x_before: float, offset: float, config: TaskConfig
+    step: int,
+    pose: Sequence[float],
+    x_before: float,
+    offset: float,
+    config: TaskConfig,
+    ground: float = 0.0,
 ) -> Outcome:
     """Return what a control period earned, and whether the episode goes on.
 
@@ -186,8 +197,10 @@ def judge(
         x_before: x at the period's begin [m].
         offset: Distance from the line at the period's end [m], positive to the left of it.
         config: Weights, scales and limits.
+        ground: Height of the ground under base_link in odom [m].
     """
-    x, _, height, roll, pitch, yaw = pose
+    x, _, z, roll, pitch, yaw = pose
+    height = z - ground
     velocity = (x - x_before) / _PERIOD_S
     terms = {
         'velocity': config.velocity_weight * velocity_term(velocity, config),
@@ -220,9 +233,14 @@ class LineTask:
         sensors: What its devices deliver; what a period earned is judged by the truth.
     """
 
-    def __init__(self, config: TaskConfig, qualities: Qualities | None = None) -> None:
+    def __init__(
+        self,
+        config: TaskConfig,
+        qualities: Qualities | None = None,
+        world: World | None = None,
+    ) -> None:
         self.config = config
-        self.simulation = Simulation()
+        self.simulation = Simulation(world)
         self.sensors = Sensors(self, qualities)
         self._line_y = self.config.line_y
         self._step = 0
@@ -243,6 +261,12 @@ class LineTask:
     def line_offset(self) -> float:
         """Distance of base_link from the line [m], positive to the left of it."""
         return float(self.simulation.data.qpos[1]) - self._line_y
+
+    def enter(self, world: World) -> None:
+        """Take another world for the episodes to come; an equal one stays as it is."""
+        if world != self.simulation.world:
+            self.simulation = Simulation(world)
+            self._over = True
 
     def reset(self, seed: int) -> Outcome:
         """Start an episode: the robot stands beside the line, its offset drawn from the seed."""
@@ -283,7 +307,8 @@ class LineTask:
     def _judge(self) -> Outcome:
         """Return the outcome of the period that just ended."""
         pose = self.simulation.pose()
-        outcome = judge(self._step, pose, self._x, pose[1] - self._line_y, self.config)
+        ground, offset = self.simulation.ground(*pose[:2]), pose[1] - self._line_y
+        outcome = judge(self._step, pose, self._x, offset, self.config, ground)
         self._x = pose[0]
         self._over = outcome.terminated or outcome.truncated
         return outcome

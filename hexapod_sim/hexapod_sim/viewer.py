@@ -25,7 +25,11 @@ def has_display() -> bool:
 
 
 class Viewer:
-    """MuJoCo's passive viewer, its camera on the robot; closing the window ends the pacing."""
+    """MuJoCo's passive viewer, its camera on the robot; closing the window ends the pacing.
+
+    Attributes:
+        paced: Whether `show` waits until a control period is over.
+    """
 
     def __init__(self, simulation: Simulation, paced: bool = True) -> None:
         """Open the window.
@@ -49,14 +53,14 @@ class Viewer:
         )
         self._handle.cam.type = mujoco.mjtCamera.mjCAMERA_TRACKING
         self._handle.cam.trackbodyid = simulation.model.body('base_link').id
-        self._paced = paced
+        self.paced = paced
         self._due = time.monotonic()
 
     def show(self) -> None:
         """Show the simulation as it is; if paced, not before a period after the last time."""
         if not self._handle.is_running():
             return
-        if not self._paced:
+        if not self.paced:
             self._handle.sync()
             return
         now = time.monotonic()

@@ -1,20 +1,21 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The environment, a composed worker and separate processes: the same numbers to the last bit."""
+"""Environment, fleet, composed worker and separate processes: the same numbers to the last bit."""
 
 from __future__ import annotations
 
 import os
 import signal
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
 import gymnasium
 import numpy as np
 import pytest
 from hexapod_agent.environment.env import HexapodLine
+from hexapod_agent.fleet.robots import Robots
 from hexapod_agent.learning.training import Trainer
 from hexapod_agent.nodes.agent_node import AgentNode
 from hexapod_agent.specification.run_spec import RunSpec
@@ -23,6 +24,7 @@ from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_sim.nodes.sim_node import SimNode
 from hexapod_sim.sensor_table import LETTERS
+from hexapod_sim.task import episode_seed
 from trajectory_msgs.msg import JointTrajectory
 
 pytestmark = pytest.mark.graph
@@ -40,6 +42,27 @@ sensors:
   body_height: {noise: 0.005}
   foot_force: {noise: 1.0, dropout: 0.3}
   foot_contacts: {noise: 0.1, delay: 0.025}
+"""
+
+# One row after the other on the same live nodes, so that each reset has to be clean as well.
+ROWS = {
+    'rough': '{name: rough, run_up: 0.3}',
+    'stairs': '{name: stairs, run_up: 0.3}',
+    'slope': '{name: slope, run_up: 0.3, gradient: 0.4}',
+    'slippery': '{friction: 0.4}',
+    'flat': '{}',
+}
+ROW_STEPS = 70
+"""In which a walk comes to lie on the ground of its scene."""
+
+
+def row(name: str) -> str:
+    """Return the specification of a short run."""
+    return f"""
+observations: {LETTERS}
+scene: {ROWS[name]}
+task: {{time_limit_steps: {ROW_STEPS}, start_offset: 0.1}}
+training: {{episodes: 1, evaluation: 1}}
 """
 
 
@@ -95,10 +118,14 @@ class Tape:
         assert self.evaluation == other.evaluation
 
 
-@pytest.fixture(scope='module', params=[PERFECT, PERFECT + BAD], ids=['perfect', 'bad'])
-def reference(request) -> Tape:
-    """Play the actions in the Gymnasium environment, with perfect sensors or bad ones."""
-    spec = RunSpec.from_text(request.param, 'a test')
+def assert_same(tapes: Sequence[Tape], others: Sequence[Tape]) -> None:
+    for tape, other in zip(tapes, others, strict=True):
+        tape.assert_equal(other)
+
+
+def in_environment(text: str) -> Tape:
+    """Play the actions in the Gymnasium environment."""
+    spec = RunSpec.from_text(text, 'a test')
     env = gymnasium.make('hexapod_agent:HexapodLine-v0', config=spec)
     observation, _ = env.reset(seed=SEED)
     observations, rewards, targets = [observation], [0.0], []
@@ -109,19 +136,53 @@ def reference(request) -> Tape:
         targets.append(info['joint_targets'])
         if terminated or truncated:
             break
-    assert len(targets) > STEPS // 4, 'the planned actions end the episode too early'
+    enough = min(STEPS // 4, spec.task.time_limit_steps - 1)
+    assert len(targets) > enough, 'the planned actions end the episode too early'
     *_, judged = evaluate(HexapodLine(config=spec), Trainer(spec, SEED))
-    return Tape(request.param, observations, rewards, targets, judged.average_return)
+    return Tape(text, observations, rewards, targets, judged.average_return)
 
 
-def play_on_graph(graph, spec: str) -> Tape:
+def in_fleet(texts: Sequence[str]) -> list[Tape]:
+    """Play the actions on robots side by side, the evaluation left out."""
+    specs = [RunSpec.from_text(text, 'a test') for text in texts]
+    robots = Robots(len(specs))
+    tapes: list[tuple[list, list]] = [([], []) for _ in specs]
+
+    def keep(slot: int, observation, outcome) -> None:
+        tapes[slot][0].append(observation)
+        tapes[slot][1].append(outcome.reward)
+
+    for slot, spec in enumerate(specs):
+        keep(slot, *robots.reset(slot, spec, episode_seed(SEED, 0)))
+    for action in planned_actions()[:ROW_STEPS]:
+        robots.actions[:] = action
+        robots.command()
+        for slot, spec in enumerate(specs):
+            outcome = robots.advance(slot)
+            keep(slot, robots.observe(slot, spec.observed), outcome)
+    return [Tape(text, *tape, (), 0.0) for text, tape in zip(texts, tapes, strict=True)]
+
+
+@pytest.fixture(scope='module', params=[PERFECT, PERFECT + BAD], ids=['perfect', 'bad'])
+def reference(request) -> Tape:
+    """Play with perfect sensors or bad ones."""
+    return in_environment(request.param)
+
+
+@pytest.fixture(scope='module')
+def rows() -> list[Tape]:
+    """Play a run in each world."""
+    return [in_environment(row(name)) for name in ROWS]
+
+
+def play_on_graph(graph, *specs: str) -> list[Tape]:
     """Play the actions through an agent node; sim and pattern generator are there already."""
     trainers: list[ScriptedTrainer] = []
     targets: list[list[list[float]]] = []
 
     def make_trainer(*args) -> ScriptedTrainer:
         trainers.append(ScriptedTrainer(*args))
-        return trainers[0]
+        return trainers[-1]
 
     def keep(message: JointTrajectory) -> None:
         targets.append([list(point.positions) for point in message.points])
@@ -130,14 +191,17 @@ def play_on_graph(graph, spec: str) -> Tape:
     publishers = graph.nodes[0].count_publishers
     graph.add(AgentNode(make_trainer))
     graph.until(lambda: publishers('joint_trajectory') == 1)
-    goal = TrainRun.Goal(run_id='one_path', spec=spec, seed=SEED)
-    response = graph.train(goal)
-    assert response.result.message == ''
-    (trainer,) = trainers
-    periods = len(trainer.rewards) - 1
-    graph.until(lambda: len(targets) > periods)  # those of the evaluation follow
-    judged = response.result.evaluation_return
-    return Tape(spec, trainer.observations, trainer.rewards, targets[:periods], judged)
+    tapes = []
+    for spec in specs:
+        targets.clear()
+        response = graph.train(TrainRun.Goal(run_id='one_path', spec=spec, seed=SEED))
+        assert response.result.message == ''
+        trainer = trainers[-1]
+        periods = len(trainer.rewards) - 1
+        graph.until(lambda least=periods: len(targets) > least)  # those of the evaluation follow
+        judged = response.result.evaluation_return
+        tapes.append(Tape(spec, trainer.observations, trainer.rewards, targets[:periods], judged))
+    return tapes
 
 
 @contextmanager
@@ -153,7 +217,32 @@ def process(*command: str) -> Iterator[subprocess.Popen]:
 
 def test_composed_worker_equals_environment(graph, reference: Tape) -> None:
     graph.add(SimNode(), CpgNode())
-    play_on_graph(graph, reference.spec).assert_equal(reference)
+    (tape,) = play_on_graph(graph, reference.spec)
+    tape.assert_equal(reference)
+
+
+def test_each_row_is_another_run(rows: list[Tape]) -> None:
+    assert len({tape.rewards.tobytes() for tape in rows}) == len(rows)
+
+
+def test_rows_of_a_fleet_equal_the_environment(rows: list[Tape]) -> None:
+    for tape, alone in zip(in_fleet([tape.spec for tape in rows]), rows, strict=True):
+        np.testing.assert_array_equal(tape.observations, alone.observations)
+        np.testing.assert_array_equal(tape.rewards, alone.rewards)
+
+
+def test_rows_on_a_composed_worker_equal_the_environment(graph, rows: list[Tape]) -> None:
+    graph.add(SimNode(), CpgNode())
+    assert_same(play_on_graph(graph, *(tape.spec for tape in rows)), rows)
+
+
+@pytest.mark.system
+def test_rows_on_separate_processes_equal_the_environment(graph, rows: list[Tape]) -> None:
+    with (
+        process('ros2', 'run', 'hexapod_sim', 'sim_node'),
+        process('ros2', 'run', 'hexapod_cpg', 'cpg_node'),
+    ):
+        assert_same(play_on_graph(graph, *(tape.spec for tape in rows)), rows)
 
 
 @pytest.mark.system
@@ -162,4 +251,5 @@ def test_separate_processes_equal_environment(graph, reference: Tape) -> None:
         process('ros2', 'run', 'hexapod_sim', 'sim_node'),
         process('ros2', 'run', 'hexapod_cpg', 'cpg_node'),
     ):
-        play_on_graph(graph, reference.spec).assert_equal(reference)
+        (tape,) = play_on_graph(graph, reference.spec)
+        tape.assert_equal(reference)

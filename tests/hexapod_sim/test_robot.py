@@ -8,6 +8,7 @@ import math
 import mujoco
 import numpy as np
 import pytest
+from hexapod_sim.scenes.table import SceneConfig
 from hexapod_sim.simulation import Simulation
 
 from hexapod_sim import robot
@@ -101,8 +102,8 @@ def test_every_contact_has_the_floor_friction(model: mujoco.MjModel) -> None:
         'body',
         *(f'{leg}_foot' for leg in robot.LEGS),
     }
-    assert robot.FLOOR_FRICTION == 0.9
-    np.testing.assert_array_equal(model.geom_friction[solid, 0], robot.FLOOR_FRICTION)
+    friction = SceneConfig.of_article().friction
+    np.testing.assert_array_equal(model.geom_friction[solid, 0], friction)
 
 
 def test_keyframe_is_the_neutral_pose_at_the_standing_height(model: mujoco.MjModel) -> None:

@@ -252,7 +252,7 @@ def test_friction_stays_inside_the_cone(standing: Simulation) -> None:
         standing.advance(NEUTRAL + rng.uniform(-0.25, 0.25, 18))
         forces = foot_forces(read(standing, 'foot_wrench'))
         normal, friction = forces[:6], forces[6:]
-        assert np.all(friction <= robot.FLOOR_FRICTION * normal + 1e-6)
+        assert np.all(friction <= standing.world.scene.friction * normal + 1e-6)
 
 
 def test_foot_forces_of_hand_made_wrenches() -> None:

@@ -133,7 +133,7 @@ class HexapodLine(gymnasium.Env[Observation, NDArray[np.float32]]):
         spec = config if isinstance(config, RunSpec) else RunSpec.load(config)
         self.config = spec if observations is None else spec.observing(observations)
         self.observation_spec = self.config.observed
-        self.task = LineTask(self.config.task, self.config.sensors)
+        self.task = LineTask(self.config.task, self.config.sensors, self.config.world)
         self.cpg = Cpg(self.config.cpg.hopf)
         self.observation_space = gymnasium.spaces.Box(
             -1.0, 1.0, (self.observation_spec.size,), np.float32

@@ -55,9 +55,11 @@ class Robots:
     def _task(self, slot: int, config: RunSpec) -> LineTask:
         """Return the task at a slot, which is kept as long as its runs have the same."""
         task = self._tasks[slot]
-        if task is None or (task.config, task.sensors.qualities) != (config.task, config.sensors):
+        if task is None:
             # A model of its own for each: advancing switches the model's sensors off and on.
-            task = self._tasks[slot] = LineTask(config.task, config.sensors)
+            task = self._tasks[slot] = LineTask(config.task, config.sensors, config.world)
+        task.enter(config.world)
+        task.config, task.sensors.qualities = config.task, config.sensors
         return task
 
     def command(self) -> None:

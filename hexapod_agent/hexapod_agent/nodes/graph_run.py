@@ -131,6 +131,7 @@ class GraphRun:
         """
         peers, goal, length = self._context.peers, self._goal, self._length
         await peers.configure('sim', 'task', asdict(self._config.task))
+        await peers.configure('sim', 'scene', asdict(self._config.scene))
         qualities = {'qualities': quality.to_text(self._config.sensors)}
         await peers.configure('sim', 'sensors', qualities)
         await peers.configure('cpg', 'cpg', asdict(self._config.cpg.hopf))

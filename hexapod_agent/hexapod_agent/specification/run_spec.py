@@ -17,8 +17,10 @@ import yaml
 from hexapod_sim.article import ARTICLE, article
 from hexapod_sim.quality import Quality
 from hexapod_sim.quality import check as check_qualities
+from hexapod_sim.scenes.table import SceneConfig, check_walk
 from hexapod_sim.sensor_table import LETTERS, SENSORS
 from hexapod_sim.task import TaskConfig
+from hexapod_sim.world import World
 from pydantic import TypeAdapter, ValidationError
 
 from hexapod_agent.algorithms import ALGORITHMS
@@ -44,6 +46,7 @@ class RunSpec:
     Attributes:
         observations: Whether the agent observes a channel, by its letter in the sensor table.
         sensors: How good a channel's device is, by its key in the sensor table.
+        scene: The ground.
         task: Reward, starts and limits.
         cpg: The pattern generator.
         learner: Algorithm and hyper-parameters.
@@ -52,6 +55,7 @@ class RunSpec:
 
     observations: Mapping[str, bool]
     sensors: Mapping[str, Quality]
+    scene: SceneConfig
     task: TaskConfig
     cpg: CpgConfig
     learner: LearnerConfig
@@ -61,6 +65,11 @@ class RunSpec:
     def letters(self) -> str:
         """Letters of the observed channels, sorted."""
         return ''.join(sorted(letter for letter, on in self.observations.items() if on))
+
+    @property
+    def world(self) -> World:
+        """What its physics is made of."""
+        return World(self.scene)
 
     @property
     def observed(self) -> ObservationSpec:
@@ -228,6 +237,7 @@ def _checked(spec: RunSpec, source: str) -> RunSpec:
     try:
         spec.learner.check()
         check_qualities(spec.sensors)
+        check_walk(spec.scene, spec.task.farthest)
     except ValueError as error:
         raise ConfigError(f'{source}: {error}') from error
     return spec

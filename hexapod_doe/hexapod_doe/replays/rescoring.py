@@ -14,6 +14,7 @@ from typing import Any
 
 import yaml
 from hexapod_agent.specification.run_spec import RunSpec
+from hexapod_sim.scenes.scene import Scene
 from hexapod_sim.simulation import roll_pitch_yaw
 from hexapod_sim.sums import ordered_sum
 from hexapod_sim.task import DIVERGED, Outcome, TaskConfig, diverged, judge, line_at
@@ -74,7 +75,7 @@ class Rescored:
 
 
 def recorded_config(bag: BagFile) -> RunSpec:
-    """Return a specification with task and sensors of a run, if the bag tells.
+    """Return a specification with scene, task and sensors of a run, if the bag tells.
 
     The rest is article.yaml's: an old bag's learner may know keys that this version does not.
 
@@ -83,7 +84,7 @@ def recorded_config(bag: BagFile) -> RunSpec:
     """
     metadata = bag.metadata()
     config = yaml.safe_load(metadata.get('spec', metadata.get('config', ''))) or {}
-    told = {name: config[name] for name in ('task', 'sensors') if name in config}
+    told = {name: config[name] for name in ('scene', 'task', 'sensors') if name in config}
     return RunSpec.from_mapping(told, f'bag {bag.path}')
 
 
@@ -99,8 +100,9 @@ def rescore(bag: BagFile, task: TaskConfig) -> Iterator[Rescored]:
     """
     spec = recorded_config(bag)
     topics, before = _Topics(bag, spec.sensors['line_offset'].perfect), spec.task
+    ground = spec.scene.make()
     for span in recorded_episodes(bag, topics.odom):
-        yield _rescore_episode(topics.samples(span), span, before, task)
+        yield _rescore_episode(topics.samples(span), span, before, task, ground)
 
 
 @dataclass(frozen=True)
@@ -147,7 +149,7 @@ class _Topics:
 
 
 def _rescore_episode(
-    samples: list[_Sample], span: Span, before: TaskConfig, task: TaskConfig
+    samples: list[_Sample], span: Span, before: TaskConfig, task: TaskConfig, ground: Scene
 ) -> Rescored:
     outcomes: list[Outcome] = []
     for step, (last, sample) in enumerate(pairwise(samples), start=1):
@@ -155,7 +157,8 @@ def _rescore_episode(
             outcome = diverged(step)
         else:
             offset = _offset(sample, step, before, task)
-            outcome = judge(step, sample.pose, last.pose[0], offset, task)
+            under = float(ground.height(*sample.pose[:2]))
+            outcome = judge(step, sample.pose, last.pose[0], offset, task, under)
         outcomes.append(outcome)
         if outcome.terminated or outcome.truncated:
             break

@@ -28,8 +28,10 @@ from hexapod_sim.nodes.publishers import SimPublishers
 from hexapod_sim.nodes.real_time import RealTime
 from hexapod_sim.quality import Quality
 from hexapod_sim.robot import CONTROL_PERIOD_NS
+from hexapod_sim.scenes.table import SceneConfig
 from hexapod_sim.task import LineTask, Outcome, TaskConfig
 from hexapod_sim.viewer import Viewer
+from hexapod_sim.world import World
 
 _QUALITIES = 'sensors.qualities'
 
@@ -66,7 +68,8 @@ class SimNode(Node):
         super().__init__('sim')
         declare(self, PARAMETERS)
         self._config = ConfigParameters(self, TaskConfig.of_article(), 'task')
-        self._task = LineTask(self._config.get(), self._qualities())
+        self._scene = ConfigParameters(self, SceneConfig.of_article(), 'scene')
+        self._task = LineTask(self._config.get(), self._qualities(), self._world())
         self.add_on_set_parameters_callback(self._on_set)
         value = {entry.name: self.get_parameter(entry.name).value for entry in PARAMETERS}
         paced = value['sync'] != REALTIME
@@ -101,6 +104,7 @@ class SimNode(Node):
         response.success = not response.message
         if response.success:
             self._task.sensors.qualities = self._qualities()
+            self._enter(self._world())
         if response.success and self._real_time is not None:
             response.start = time_message(self._real_time.reset(request.seed, self._config.get()))
             return response
@@ -112,6 +116,17 @@ class SimNode(Node):
             self._publish(outcome, self._now_ns)
         response.start = time_message(self._now_ns)
         return response
+
+    def _enter(self, world: World) -> None:
+        """Go to the world of the next episodes, and let the window follow."""
+        before = self._task.simulation
+        self._task.enter(world)
+        if self._viewer is not None and self._task.simulation is not before:
+            self._viewer.close()
+            self._viewer = Viewer(self._task.simulation, self._viewer.paced)
+
+    def _world(self) -> World:
+        return World(self._scene.get())
 
     def _qualities(self) -> dict[str, Quality]:
         return quality.from_text(self.get_parameter(_QUALITIES).value)

@@ -50,7 +50,15 @@ def test_every_value_of_the_article_has_an_origin():
 
 def test_sections():
     names = {field.name for field in fields(RunSpec)}
-    assert names == {'observations', 'sensors', 'task', 'cpg', 'learner', 'training'}
+    assert names == {
+        'observations',
+        'sensors',
+        'scene',
+        'task',
+        'cpg',
+        'learner',
+        'training',
+    }
 
 
 def test_a_file_changes_what_it_names_and_nothing_else(write):
@@ -71,7 +79,7 @@ def test_mapping_round_trip():
     [
         (
             'ddgp: {}',
-            "unknown key 'ddgp', expected one of observations, sensors, task, cpg",
+            "unknown key 'ddgp', expected one of observations, sensors, scene, task, cpg",
         ),
         (
             'learner: {ddpg: {gamma: 1}}',

@@ -17,7 +17,9 @@ from hexapod_cpg.mapping import ActionRanges, command_from_action
 from hexapod_cpg.oscillator import HopfConfig
 from hexapod_doe.bags.bag_writer import BagWriter
 from hexapod_doe.bags.rosbag2 import Topic
+from hexapod_sim.scenes.table import SceneConfig
 from hexapod_sim.task import LineTask, Outcome, TaskConfig
+from hexapod_sim.world import World
 
 RANGES = ActionRanges.of_article()
 
@@ -30,10 +32,13 @@ TOPICS = {
 
 
 def play(
-    config: TaskConfig, seed: int, look: Callable[[LineTask, Outcome], None]
+    config: TaskConfig,
+    seed: int,
+    look: Callable[[LineTask, Outcome], None],
+    world: World | None = None,
 ) -> list[Outcome]:
     """Walk straight until the episode ends; show each sample, and return the outcomes."""
-    task, cpg = LineTask(config), Cpg(HopfConfig.of_article())
+    task, cpg = LineTask(config, world=world), Cpg(HopfConfig.of_article())
     outcome = task.reset(seed)
     look(task, outcome)
     outcomes = []
@@ -71,10 +76,13 @@ def messages(task: LineTask, outcome: Outcome) -> dict[str, object]:
 def record(tmp_path: Path) -> Callable[..., tuple[Path, list[list[Outcome]]]]:
     """Return a function that records episodes and returns the bag and their outcomes."""
 
-    def record_bag(config, seeds=(1,), leave_out=(), lose=None, change=None, sensors=()):
+    def record_bag(
+        config, seeds=(1,), leave_out=(), lose=None, change=None, sensors=(), scene=None
+    ):
         from rclpy.serialization import serialize_message
 
-        spec = {'task': vars(config), 'sensors': dict(sensors)}
+        spec = {'task': vars(config), 'sensors': dict(sensors), 'scene': dict(scene or {})}
+        world = World(SceneConfig.of_article(**spec['scene']))
         told = {'run_id': 'walk', 'config': yaml.safe_dump(spec)}
         stamp = 0
         with BagWriter(tmp_path / 'walk', told) as writer:
@@ -93,7 +101,7 @@ def record(tmp_path: Path) -> Callable[..., tuple[Path, list[list[Outcome]]]]:
                     writer.add_topic(topic)
                     writer.write(topic.name, serialize_message(message), stamp)
 
-            outcomes = [play(config, seed, write) for seed in seeds]
+            outcomes = [play(config, seed, write, world) for seed in seeds]
         return tmp_path / 'walk', outcomes
 
     return record_bag

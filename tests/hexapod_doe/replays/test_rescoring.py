@@ -14,7 +14,7 @@ from hexapod_doe.errors import BagError
 from hexapod_doe.replays.rescoring import recorded_config, rescore
 from hexapod_doe.rescore import main
 from hexapod_sim.sums import ordered_sum
-from hexapod_sim.task import DIVERGED, TaskConfig
+from hexapod_sim.task import DIVERGED, TaskConfig, judge
 
 from hexapod_doe import shadow
 
@@ -69,6 +69,16 @@ def test_every_episode_gets_the_outcomes_of_the_task(record):
     scored = scores(bag, SHORT)
     assert [row.episode for row in scored] == [0, 1]
     assert [list(row.outcomes) for row in scored] == played
+
+
+def test_heights_are_those_above_the_recorded_ground(record):
+    """In 80 steps the body comes to be above the first stair."""
+    task = replace(SHORT, time_limit_steps=80)
+    bag, played = record(task, scene={'name': 'stairs', 'run_up': 0.3})
+    assert [list(row.outcomes) for row in scores(bag, task)] == played
+    z = [odometry.pose.pose.position.z for _, odometry in read_topic(bag, 'odom')]
+    above_the_floor = judge(80, (0.0, 0.0, z[-1], 0.0, 0.0, 0.0), 0.0, 0.0, task).terms['height']
+    assert played[0][-1].terms['height'] != above_the_floor
 
 
 def test_another_reward_is_that_of_a_task_that_has_it(record, tmp_path):

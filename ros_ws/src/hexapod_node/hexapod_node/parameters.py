@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 from functools import partial
 from itertools import pairwise
-from typing import Any, Generic, TypeVar, get_type_hints
+from typing import Any, Generic, Literal, TypeVar, get_args, get_origin, get_type_hints
 from weakref import WeakSet
 
 from rcl_interfaces.msg import (
@@ -165,7 +165,7 @@ def config_table(default: Any, prefix: str) -> tuple[Parameter, ...]:
     """Return the parameters that the scalar fields of a configuration make, with its values.
 
     A field's docstring is the description; where it ends in brackets, they hold the unit. An
-    `Interval` in its annotation is the range.
+    `Interval` in its annotation is the range, a `Literal` the choices.
     """
     config = type(default)
     docs = _field_docs(config)
@@ -176,8 +176,10 @@ def config_table(default: Any, prefix: str) -> tuple[Parameter, ...]:
         if isinstance(value, Scalar):
             text, unit = _split_unit(docs.get(field.name, ''))
             name = f'{prefix}.{field.name}'
-            limits = _limits(hints[field.name])
-            table.append(Parameter(name, value, text, unit, limits, read_only=False))
+            hint = hints[field.name]
+            choices = get_args(hint) if get_origin(hint) is Literal else ()
+            limits = _limits(hint)
+            table.append(Parameter(name, value, text, unit, limits, choices, read_only=False))
     return tuple(table)
 
 
@@ -193,7 +195,14 @@ def _limits(hint: Any) -> tuple[float, float] | None:
 
 
 def _field_docs(config: type) -> dict[str, str]:
-    """Return the string that follows each field in the source of a dataclass."""
+    """Return the string that follows each field in the source of a dataclass and its bases."""
+    docs: dict[str, str] = {}
+    for base in config.__mro__[:-1]:
+        docs = _own_field_docs(base) | docs
+    return docs
+
+
+def _own_field_docs(config: type) -> dict[str, str]:
     (definition,) = ast.parse(inspect.cleandoc(inspect.getsource(config))).body
     assert isinstance(definition, ast.ClassDef)
     docs = {}
