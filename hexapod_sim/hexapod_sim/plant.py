@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from hexapod_sim import robot
 from hexapod_sim.simulation import SimulationDivergedError
-from hexapod_sim.task import LineTask, Outcome, TaskConfig
+from hexapod_sim.task import LineTask, Outcome
+from hexapod_sim.task_config import TaskConfig
 
 _STANDING = np.tile(robot.NEUTRAL_POSE, (robot.SUBSTEPS, 1))
 

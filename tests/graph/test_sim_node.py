@@ -17,7 +17,8 @@ from hexapod_interfaces.srv import ResetEpisode
 from hexapod_node.stamps import time_message, to_nanoseconds
 from hexapod_sim.nodes.sim_node import SimNode
 from hexapod_sim.sums import ordered_sum
-from hexapod_sim.task import LineTask, TaskConfig, episode_seed
+from hexapod_sim.task import LineTask, episode_seed
+from hexapod_sim.task_config import TaskConfig
 from nav_msgs.msg import Odometry
 from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.parameter import Parameter

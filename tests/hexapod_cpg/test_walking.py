@@ -9,7 +9,8 @@ from hexapod_cpg.cpg import Cpg
 from hexapod_cpg.mapping import ACTION_SIZE, READINGS, ActionRanges, command_from_action
 from hexapod_cpg.oscillator import HopfConfig
 from hexapod_sim.sensors import read
-from hexapod_sim.task import LineTask, TaskConfig
+from hexapod_sim.task import LineTask
+from hexapod_sim.task_config import TaskConfig
 
 from hexapod_sim import robot
 

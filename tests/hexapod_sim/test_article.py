@@ -13,7 +13,7 @@ from hexapod_cpg.mapping import ActionRanges
 from hexapod_cpg.oscillator import HopfConfig
 from hexapod_sim.article import section
 from hexapod_sim.quality import PERFECT, Quality
-from hexapod_sim.task import TaskConfig
+from hexapod_sim.task_config import TaskConfig
 
 SECTIONS = {
     TaskConfig: ('task',),

@@ -12,7 +12,8 @@ from hexapod_sim.message_fields import read, write
 from hexapod_sim.nodes.fake_driver_node import PARAMETERS
 from hexapod_sim.nodes.messages import SENSOR_TOPICS
 from hexapod_sim.robot import JOINTS, LEGS, NEUTRAL_POSE, SUBSTEPS
-from hexapod_sim.task import LineTask, TaskConfig
+from hexapod_sim.task import LineTask
+from hexapod_sim.task_config import TaskConfig
 from rclpy.serialization import deserialize_message, serialize_message
 
 DEFAULTS = {entry.name: entry.default for entry in PARAMETERS}

@@ -8,7 +8,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from hexapod_sim.plant import Plant
-from hexapod_sim.task import LineTask, TaskConfig
+from hexapod_sim.task import LineTask
+from hexapod_sim.task_config import TaskConfig
 
 from hexapod_sim import robot
 

@@ -13,7 +13,8 @@ import pytest
 from hexapod_sim.quality import PERFECT, Quality
 from hexapod_sim.sensor_table import CHANNELS, MEASURED, SENSORS, foot_forces
 from hexapod_sim.simulation import Simulation, _locate_blocks
-from hexapod_sim.task import LineTask, TaskConfig
+from hexapod_sim.task import LineTask
+from hexapod_sim.task_config import TaskConfig
 
 from hexapod_sim import robot, sensors
 

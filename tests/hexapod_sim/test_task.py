@@ -16,7 +16,6 @@ from hexapod_sim.sums import ordered_sum
 from hexapod_sim.task import (
     TERM_NAMES,
     LineTask,
-    TaskConfig,
     closeness_term,
     episode_seed,
     failure_cause,
@@ -26,6 +25,7 @@ from hexapod_sim.task import (
     orientation_penalty,
     velocity_term,
 )
+from hexapod_sim.task_config import TaskConfig
 
 from hexapod_sim import robot
 

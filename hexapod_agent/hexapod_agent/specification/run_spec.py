@@ -19,7 +19,7 @@ from hexapod_sim.quality import Quality
 from hexapod_sim.quality import check as check_qualities
 from hexapod_sim.scenes.table import SceneConfig, check_walk
 from hexapod_sim.sensor_table import LETTERS, SENSORS
-from hexapod_sim.task import TaskConfig
+from hexapod_sim.task_config import TaskConfig
 from hexapod_sim.world import World
 from pydantic import TypeAdapter, ValidationError
 

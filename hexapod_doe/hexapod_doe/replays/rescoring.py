@@ -17,7 +17,8 @@ from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_sim.scenes.scene import Scene
 from hexapod_sim.simulation import roll_pitch_yaw
 from hexapod_sim.sums import ordered_sum
-from hexapod_sim.task import DIVERGED, Outcome, TaskConfig, diverged, judge, line_at
+from hexapod_sim.task import DIVERGED, Outcome, diverged, judge, line_at
+from hexapod_sim.task_config import TaskConfig
 
 from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.errors import BagError

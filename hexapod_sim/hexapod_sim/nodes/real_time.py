@@ -17,7 +17,8 @@ from trajectory_msgs.msg import JointTrajectory
 from hexapod_sim.nodes.messages import targets_from_message
 from hexapod_sim.plant import Plant
 from hexapod_sim.robot import CONTROL_PERIOD_NS
-from hexapod_sim.task import LineTask, Outcome, TaskConfig
+from hexapod_sim.task import LineTask, Outcome
+from hexapod_sim.task_config import TaskConfig
 
 if TYPE_CHECKING:
     from hexapod_node.diagnostics import Health

@@ -29,7 +29,8 @@ from hexapod_sim.nodes.real_time import RealTime
 from hexapod_sim.quality import Quality
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from hexapod_sim.scenes.table import SceneConfig
-from hexapod_sim.task import LineTask, Outcome, TaskConfig
+from hexapod_sim.task import LineTask, Outcome
+from hexapod_sim.task_config import TaskConfig
 from hexapod_sim.viewer import Viewer
 from hexapod_sim.world import World
 

@@ -14,7 +14,8 @@ from hexapod_agent.contract.watch import MessageWatch
 from hexapod_sim.nodes.messages import SENSOR_TOPICS
 from hexapod_sim.robot import GRAVITY, JOINTS
 from hexapod_sim.sensor_table import CHANNELS
-from hexapod_sim.task import LineTask, TaskConfig
+from hexapod_sim.task import LineTask
+from hexapod_sim.task_config import TaskConfig
 from sensor_msgs.msg import Imu, JointState
 
 TABLE = {topic: channel for channel in CHANNELS for topic in channel.topics}

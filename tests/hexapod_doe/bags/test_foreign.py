@@ -15,7 +15,7 @@ from hexapod_doe.bags.run_record import read_run, read_topic
 from hexapod_doe.errors import BagError
 from hexapod_doe.replays.rescoring import rescore
 from hexapod_sim.article import section
-from hexapod_sim.task import TaskConfig
+from hexapod_sim.task_config import TaskConfig
 from mcap.writer import CompressionType, Writer
 
 from .conftest import HELLO, Recorded, write_file

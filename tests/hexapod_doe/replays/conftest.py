@@ -18,7 +18,8 @@ from hexapod_cpg.oscillator import HopfConfig
 from hexapod_doe.bags.bag_writer import BagWriter
 from hexapod_doe.bags.rosbag2 import Topic
 from hexapod_sim.scenes.table import SceneConfig
-from hexapod_sim.task import LineTask, Outcome, TaskConfig
+from hexapod_sim.task import LineTask, Outcome
+from hexapod_sim.task_config import TaskConfig
 from hexapod_sim.world import World
 
 RANGES = ActionRanges.of_article()

@@ -14,7 +14,8 @@ from hexapod_doe.errors import BagError
 from hexapod_doe.replays.rescoring import recorded_config, rescore
 from hexapod_doe.rescore import main
 from hexapod_sim.sums import ordered_sum
-from hexapod_sim.task import DIVERGED, TaskConfig, judge
+from hexapod_sim.task import DIVERGED, judge
+from hexapod_sim.task_config import TaskConfig
 
 from hexapod_doe import shadow
 

@@ -16,7 +16,8 @@ from hexapod_sim.scenes.scene import LENGTH
 from hexapod_sim.scenes.table import SCENES, SceneConfig, check_walk
 from hexapod_sim.sensors import read
 from hexapod_sim.simulation import Simulation
-from hexapod_sim.task import LineTask, TaskConfig
+from hexapod_sim.task import LineTask
+from hexapod_sim.task_config import TaskConfig
 from hexapod_sim.world import World
 
 from hexapod_sim import robot
