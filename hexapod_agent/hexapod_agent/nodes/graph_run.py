@@ -8,7 +8,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -32,7 +32,6 @@ from hexapod_agent.nodes.control_loop import OUTCOME, ControlLoop
 from hexapod_agent.nodes.messages import summary_to_message
 from hexapod_agent.nodes.peers import PeerError, Peers
 from hexapod_agent.specification.run_spec import RunSpec
-from hexapod_sim import quality
 
 if TYPE_CHECKING:
     from hexapod_node.intra_process import LockStepPublisher
@@ -130,11 +129,7 @@ class GraphRun:
             CanceledError: The goal was taken back.
         """
         peers, goal, length = self._context.peers, self._goal, self._length
-        await peers.configure('sim', 'task', asdict(self._config.task))
-        await peers.configure('sim', 'scene', asdict(self._config.scene))
-        qualities = {'qualities': quality.to_text(self._config.sensors)}
-        await peers.configure('sim', 'sensors', qualities)
-        await peers.configure('cpg', 'cpg', asdict(self._config.cpg.hopf))
+        await peers.configure_run(self._config)
         first = await self._open_bag() if goal.bag else 0
         if isinstance(self._agent, Trainer):
             set_numerics(self._config.training.precision)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from diagnostic_msgs.msg import KeyValue
@@ -21,6 +22,9 @@ from hexapod_node.coroutines import ServiceUnavailableError, call, sleep, until_
 from hexapod_node.parameters import to_messages
 from hexapod_node.stamps import time_message, to_nanoseconds
 from rcl_interfaces.srv import ListParameters, SetParametersAtomically
+
+from hexapod_agent.specification.run_spec import RunSpec
+from hexapod_sim import quality
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -61,6 +65,14 @@ class Peers:
         response = await self._repeat_until_answered(client, request)
         if not response.result.successful:
             raise PeerError(f'{client.service_name}: {response.result.reason}')
+
+    async def configure_run(self, spec: RunSpec) -> None:
+        """Give sim and pattern generator what a run's specification says of them."""
+        await self.configure('sim', 'task', asdict(spec.task))
+        await self.configure('sim', 'scene', asdict(spec.scene))
+        qualities = {'qualities': quality.to_text(spec.sensors)}
+        await self.configure('sim', 'sensors', qualities)
+        await self.configure('cpg', 'cpg', asdict(spec.cpg.hopf))
 
     async def greet_recorder(self) -> None:
         """Wait until the recorder's answers arrive."""

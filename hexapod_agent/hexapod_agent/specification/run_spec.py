@@ -7,11 +7,10 @@ article.yaml holds every value with its origin. A file of one's own names only w
 YAML is the text form; a dotted key such as 'learner.actor.learning_rate' names one value.
 """
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import asdict, dataclass, fields
-from functools import cache
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import yaml
 from hexapod_sim.article import ARTICLE, article
@@ -21,7 +20,7 @@ from hexapod_sim.scenes.table import SceneConfig, check_walk
 from hexapod_sim.sensor_table import LETTERS, SENSORS
 from hexapod_sim.task_config import TaskConfig
 from hexapod_sim.world import World
-from pydantic import TypeAdapter, ValidationError
+from pydantic import TypeAdapter
 
 from hexapod_agent.algorithms import ALGORITHMS
 from hexapod_agent.algorithms.learner import LearnerConfig
@@ -34,9 +33,9 @@ from hexapod_agent.specification.spec_text import (
     merged,
     nest,
     parsed_setting,
-    quoted,
     read_changes,
 )
+from hexapod_agent.specification.validation import check_keys, modern, validated, with_algorithm
 
 
 @dataclass(frozen=True)
@@ -190,14 +189,6 @@ class RunSpec:
         return self.changed({'observations': parse_observations(letters)}, 'observations')
 
 
-T = TypeVar('T')
-# One takes longer to make than to use.
-_adapter: Callable[[Any], TypeAdapter[Any]] = cache(TypeAdapter)
-
-# Sections of the layout before there was one for the learner, of bags and checkpoints.
-_OF_THE_LEARNER = ('actor', 'critic', 'ddpg', 'noise')
-
-
 def _base() -> dict[str, Any]:
     """Return the values of article.yaml, what it says of each channel spread over them all."""
     values = dict(article())
@@ -219,17 +210,17 @@ def _built(base: Mapping[str, Any], changes: Any, source: str) -> RunSpec:
     """Validate each value of a base with changes."""
     if not isinstance(changes, Mapping):
         raise ConfigError(f'{source}: expected sections with keys, as article.yaml has them')
-    changes = _modern(changes)
+    changes = modern(changes)
     if isinstance(changes.get('observations'), str):
         chosen = parse_observations(changes['observations'])
         changes['observations'] = {letter: letter in chosen for letter in LETTERS}
-    base = _with_algorithm(base, changes, source)
-    _check_keys(base, changes, source, '')
+    base = with_algorithm(base, changes, source)
+    check_keys(base, changes, source, '')
     values = merged(base, changes)
-    learner = _validated(
+    learner = validated(
         ALGORITHMS[values['learner']['algorithm']].config, values['learner'], source, 'learner.'
     )
-    return _validated(RunSpec, values | {'learner': learner}, source)
+    return validated(RunSpec, values | {'learner': learner}, source)
 
 
 def _checked(spec: RunSpec, source: str) -> RunSpec:
@@ -241,63 +232,3 @@ def _checked(spec: RunSpec, source: str) -> RunSpec:
     except ValueError as error:
         raise ConfigError(f'{source}: {error}') from error
     return spec
-
-
-def _validated(kind: type[T], values: Any, source: str, prefix: str = '') -> T:
-    """Make a section of its values."""
-    try:
-        found: T = _adapter(kind).validate_python(values)
-        return found
-    except ValidationError as error:
-        first = error.errors()[0]
-        key = prefix + '.'.join(str(part) for part in first['loc'])
-        raise ConfigError(
-            f'{source}: {key} is {quoted(first["input"])}, expected: {first["msg"]}'
-        ) from error
-
-
-def _with_algorithm(
-    base: Mapping[str, Any], changes: Mapping[str, Any], source: str
-) -> Mapping[str, Any]:
-    """Return a base with the learner's sections of the algorithm that changes choose.
-
-    Sections that both algorithms have stay as they are.
-    """
-    learner, held = changes.get('learner'), base['learner']
-    chosen = held['algorithm']
-    if isinstance(learner, Mapping):
-        chosen = learner.get('algorithm', chosen)
-    if chosen == held['algorithm']:
-        return base
-    if not isinstance(chosen, str) or chosen not in ALGORITHMS:
-        known = ', '.join(ALGORITHMS)
-        raise ConfigError(
-            f'{source}: learner.algorithm is {quoted(chosen)}, expected one of {known}'
-        )
-    held = article()['learner'] | held
-    sections = {}
-    for each in fields(ALGORITHMS[chosen].config):
-        default: Any = each.default
-        sections[each.name] = held[each.name] if each.name in held else asdict(default)
-    return {**base, 'learner': sections | {'algorithm': chosen}}
-
-
-def _modern(changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return changes in today's layout: a learner's own sections stand in its section."""
-    moved = {name: changes[name] for name in _OF_THE_LEARNER if name in changes}
-    if not moved:
-        return dict(changes)
-    kept = {name: value for name, value in changes.items() if name not in moved}
-    return merged(kept, {'learner': moved})
-
-
-def _check_keys(base: Mapping[str, Any], changes: Any, source: str, prefix: str) -> None:
-    """Refuse keys that the base, or a section of it, does not have."""
-    if not isinstance(changes, Mapping):
-        raise ConfigError(f'{source}: {prefix.rstrip(".")} is {quoted(changes)}, expected keys')
-    for key, value in changes.items():
-        if key not in base:
-            unknown, known = quoted(f'{prefix}{key}'), ', '.join(base)
-            raise ConfigError(f'{source}: unknown key {unknown}, expected one of {known}')
-        if isinstance(base[key], Mapping):
-            _check_keys(base[key], value, source, f'{prefix}{key}.')

@@ -1,0 +1,82 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+"""Holds the text of a specification to the keys and values that there are."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, fields
+from functools import cache
+from typing import Any, TypeVar
+
+from hexapod_sim.article import article
+from pydantic import TypeAdapter, ValidationError
+
+from hexapod_agent.algorithms import ALGORITHMS
+from hexapod_agent.specification.spec_text import ConfigError, merged, quoted
+
+T = TypeVar('T')
+# One takes longer to make than to use.
+_adapter: Callable[[Any], TypeAdapter[Any]] = cache(TypeAdapter)
+
+# Sections of the layout before there was one for the learner, of bags and checkpoints.
+_OF_THE_LEARNER = ('actor', 'critic', 'ddpg', 'noise')
+
+
+def validated(kind: type[T], values: Any, source: str, prefix: str = '') -> T:
+    """Make a section of its values."""
+    try:
+        found: T = _adapter(kind).validate_python(values)
+        return found
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = prefix + '.'.join(str(part) for part in first['loc'])
+        raise ConfigError(
+            f'{source}: {key} is {quoted(first["input"])}, expected: {first["msg"]}'
+        ) from error
+
+
+def with_algorithm(
+    base: Mapping[str, Any], changes: Mapping[str, Any], source: str
+) -> Mapping[str, Any]:
+    """Return a base with the learner's sections of the algorithm that changes choose.
+
+    Sections that both algorithms have stay as they are.
+    """
+    learner, held = changes.get('learner'), base['learner']
+    chosen = held['algorithm']
+    if isinstance(learner, Mapping):
+        chosen = learner.get('algorithm', chosen)
+    if chosen == held['algorithm']:
+        return base
+    if not isinstance(chosen, str) or chosen not in ALGORITHMS:
+        known = ', '.join(ALGORITHMS)
+        raise ConfigError(
+            f'{source}: learner.algorithm is {quoted(chosen)}, expected one of {known}'
+        )
+    held = article()['learner'] | held
+    sections = {}
+    for each in fields(ALGORITHMS[chosen].config):
+        default: Any = each.default
+        sections[each.name] = held[each.name] if each.name in held else asdict(default)
+    return {**base, 'learner': sections | {'algorithm': chosen}}
+
+
+def modern(changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return changes in today's layout: a learner's own sections stand in its section."""
+    moved = {name: changes[name] for name in _OF_THE_LEARNER if name in changes}
+    if not moved:
+        return dict(changes)
+    kept = {name: value for name, value in changes.items() if name not in moved}
+    return merged(kept, {'learner': moved})
+
+
+def check_keys(base: Mapping[str, Any], changes: Any, source: str, prefix: str) -> None:
+    """Refuse keys that the base, or a section of it, does not have."""
+    if not isinstance(changes, Mapping):
+        raise ConfigError(f'{source}: {prefix.rstrip(".")} is {quoted(changes)}, expected keys')
+    for key, value in changes.items():
+        if key not in base:
+            unknown, known = quoted(f'{prefix}{key}'), ', '.join(base)
+            raise ConfigError(f'{source}: unknown key {unknown}, expected one of {known}')
+        if isinstance(base[key], Mapping):
+            check_keys(base[key], value, source, f'{prefix}{key}.')
