@@ -29,6 +29,7 @@ setup(
     entry_points={
         'console_scripts': [
             'description_node = hexapod_bringup.executables:description_node',
+            'doctor = hexapod_bringup.doctor:main',
             'layout = hexapod_bringup.layout:main',
             'realtime_report = hexapod_bringup.realtime_report:main',
             'worker_node = hexapod_bringup.executables:worker_node',
