@@ -6,12 +6,12 @@
 import importlib.util
 
 import pytest
-from hexapod_bringup.description import robot_description
 from hexapod_bringup.description_node import DescriptionNode, base_frame
 from hexapod_node.qos import LATCHED
 from hexapod_sim.robot import JOINTS
 from nav_msgs.msg import Odometry
 from rcl_interfaces.msg import Log
+from robot_urdf import robot_description
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 

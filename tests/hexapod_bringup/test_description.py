@@ -10,8 +10,8 @@ from xml.etree import ElementTree
 import mujoco
 import numpy as np
 import pytest
-from hexapod_bringup.description import capsule_inertia, robot_description
 from hexapod_sim.simulation import Simulation
+from robot_urdf import capsule_inertia, robot_description
 
 from hexapod_sim import robot
 
@@ -50,7 +50,7 @@ def inertia(model: mujoco.MjModel, body: str) -> np.ndarray:
 
 def test_shipped_file_is_the_one_made_of_the_numbers() -> None:
     assert FILE.read_text(encoding='utf-8') == robot_description(), (
-        'run python -m hexapod_bringup.description ros_ws/src/hexapod_bringup/urdf/hexapod.urdf'
+        'run python tests/support/robot_urdf.py ros_ws/src/hexapod_bringup/urdf/hexapod.urdf'
     )
 
 

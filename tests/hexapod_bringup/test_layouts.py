@@ -10,16 +10,13 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from hexapod_bringup.layout import MAKERS, NAMESPACE, main
-from hexapod_bringup.layouts.foxglove import foxglove
-from hexapod_bringup.layouts.plotjuggler import plotjuggler
+from hexapod_bringup.layout import FILES, NAMESPACE, main
 from hexapod_doe.bags.bag_file import BagFile
+from layouts import MAKERS, SHIPPED, foxglove, plotjuggler
 
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLE = ROOT / 'bags' / 'sample'
 NEWER = ROOT / 'bags' / 'sample_campaign' / 'runs' / 'case01_rep01'
-SHIPPED = ROOT / 'ros_ws/src/hexapod_bringup/layouts'
-FILES = {'foxglove': 'foxglove.json', 'plotjuggler': 'plotjuggler.xml'}
 
 
 @pytest.fixture(scope='module')
@@ -99,9 +96,11 @@ def test_both_show_the_same_curves() -> None:
 @pytest.mark.parametrize('program', MAKERS)
 def test_shipped_layouts_are_those_of_the_worker(program: str, tmp_path, capsys) -> None:
     main([program])
-    printed = capsys.readouterr().out
-    assert (SHIPPED / FILES[program]).read_text(encoding='utf-8') == printed
+    made = MAKERS[program](NAMESPACE)
+    assert capsys.readouterr().out == made, 'run python tests/support/layouts.py'
+    assert (SHIPPED / FILES[program]).read_text(encoding='utf-8') == made
     launch = ElementTree.parse(SHIPPED.parent / 'launch' / 'worker.launch.xml')
     assert launch.find("arg[@name='namespace']").get('default') == NAMESPACE
-    main([program, '--namespace', '', '--out', str(tmp_path / 'layout')])
-    assert f'/{NAMESPACE}/' not in (tmp_path / 'layout').read_text()
+    for namespace in ('', 'a/b'):
+        main([program, '--namespace', namespace, '--out', str(tmp_path / 'layout')])
+        assert (tmp_path / 'layout').read_text() == MAKERS[program](namespace)

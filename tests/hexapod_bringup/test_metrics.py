@@ -11,11 +11,10 @@ from hexapod_agent.learning import metrics
 from hexapod_agent.learning.event_log import scalars
 from hexapod_agent.learning.metrics import METRICS, Metric
 from hexapod_agent.learning.summary import EpisodeRecord
-from hexapod_bringup.layouts.foxglove import foxglove
-from hexapod_bringup.layouts.plotjuggler import plotjuggler
 from hexapod_doe.reporting.glossary import meanings
 from hexapod_sim.task import Outcome
 from interface_tables import metric_table
+from layouts import foxglove, plotjuggler
 
 LAST = Outcome(600, 1.0, {}, False, True, 'time_limit')
 

@@ -6,6 +6,7 @@
 from collections.abc import Iterable, Sequence
 
 import numpy as np
+from ament_index_python import get_package_share_path
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import TransformStamped
@@ -19,7 +20,6 @@ from scipy.spatial.transform import Rotation
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
-from hexapod_bringup.description import robot_description
 from hexapod_bringup.frames import Transform, device_frames, foot_frames, link_frames
 
 try:
@@ -33,8 +33,9 @@ class DescriptionNode(Node):
 
     def __init__(self) -> None:
         super().__init__('description')
+        shipped = get_package_share_path('hexapod_bringup') / 'urdf' / 'hexapod.urdf'
         self._description = self.create_publisher(String, 'robot_description', LATCHED)
-        self._description.publish(String(data=robot_description()))
+        self._description.publish(String(data=shipped.read_text(encoding='utf-8')))
         self._links: list[Transform] = []
         self._sent = 0
         if TFMessage is None:

@@ -5,26 +5,28 @@
 
 from collections.abc import Sequence
 
+from ament_index_python import get_package_share_path
 from hexapod_sim.command_line import CommandLine, file
-
-from hexapod_bringup.layouts.foxglove import foxglove
-from hexapod_bringup.layouts.plotjuggler import plotjuggler
 
 NAMESPACE = 'worker_1'
 """Namespace of the files that this package ships: that of worker.launch.xml."""
-MAKERS = {'foxglove': foxglove, 'plotjuggler': plotjuggler}
+FILES = {'foxglove': 'foxglove.json', 'plotjuggler': 'plotjuggler.xml'}
+"""What is shipped, by program."""
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Print a layout, or write it into a file."""
     parser = CommandLine(prog='layout', description=__doc__)
-    parser.add_argument('program', choices=MAKERS)
+    parser.add_argument('program', choices=FILES)
     parser.add_argument(
         '--namespace', default=NAMESPACE, help=f'of the nodes to see (default {NAMESPACE})'
     )
     parser.add_argument('--out', type=file, metavar='FILE', help='write it instead of printing')
     options = parser.parse_args(arguments)
-    text = MAKERS[options.program](options.namespace)
+    shipped = get_package_share_path('hexapod_bringup') / 'layouts' / FILES[options.program]
+    name = options.namespace.strip('/')
+    text = shipped.read_text(encoding='utf-8')
+    text = text.replace(f'/{NAMESPACE}/', f'/{name}/' if name else '/')
     if options.out is None:
         print(text, end='')
     else:

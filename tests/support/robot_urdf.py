@@ -3,8 +3,9 @@
 
 """The robot as URDF, made of the numbers in robot.py, without meshes.
 
-`python -m hexapod_bringup.description urdf/hexapod.urdf` writes the file that this package ships;
-a test holds the file to this module, and both to the compiled MuJoCo model.
+`python tests/support/robot_urdf.py ros_ws/src/hexapod_bringup/urdf/hexapod.urdf` writes the file
+that hexapod_bringup ships; a test holds the file to this module, and both to the compiled MuJoCo
+model.
 
 A capsule is a cylinder with a sphere at each end. What collides is what does in the simulation:
 the body's box and the feet. `<leg>_foot` frames keep their axes along odom, so no link has them.
@@ -16,19 +17,12 @@ from xml.etree import ElementTree
 
 import numpy as np
 from hexapod_sim.command_line import CommandLine, file
+from numpy.typing import NDArray
 
-from hexapod_bringup.urdf_elements import (
-    ORIGIN,
-    add_capsule,
-    add_inertial,
-    add_joint,
-    add_link,
-    add_origin,
-    add_shape,
-    numbers,
-)
 from hexapod_sim import robot
 
+Vector = Sequence[float] | NDArray[np.float64]
+ORIGIN = (0.0, 0.0, 0.0)
 # Colours of the simulation's materials, red green blue alpha.
 _COLOURS = {
     'shell': '0.16 0.18 0.22 1',
@@ -57,7 +51,7 @@ def robot_description() -> str:
     for index, leg in enumerate(robot.LEGS):
         _add_leg(root, index, leg)
     ElementTree.indent(root)
-    note = '<!-- Written by hexapod_bringup.description; do not edit. -->'
+    note = '<!-- Written by tests/support/robot_urdf.py; do not edit. -->'
     text = ElementTree.tostring(root, encoding='unicode')
     return f'<?xml version="1.0"?>\n{note}\n{text}\n'
 
@@ -152,6 +146,72 @@ def capsule_inertia(mass: float, radius: float, length: float) -> tuple[float, f
     across = cylinder * (length**2 / 12 + radius**2 / 4)
     across += ball * (0.4 * radius**2 + length**2 / 4 + 0.375 * length * radius)
     return across, along
+
+
+def add_link(root: ElementTree.Element, name: str) -> ElementTree.Element:
+    """Add a link without anything yet."""
+    return ElementTree.SubElement(root, 'link', name=name)
+
+
+def add_joint(
+    root: ElementTree.Element, name: str, kind: str, parent: str, child: str
+) -> ElementTree.Element:
+    """Add a joint of a kind between two links."""
+    joint = ElementTree.SubElement(root, 'joint', name=name, type=kind)
+    ElementTree.SubElement(joint, 'parent', link=parent)
+    ElementTree.SubElement(joint, 'child', link=child)
+    return joint
+
+
+def add_inertial(
+    link: ElementTree.Element, mass: float, centre: Vector, inertia: NDArray[np.float64]
+) -> None:
+    """Give a link its mass [kg], its centre of mass [m] and its inertia about it [kg m^2]."""
+    inertial = ElementTree.SubElement(link, 'inertial')
+    add_origin(inertial, centre, ORIGIN)
+    ElementTree.SubElement(inertial, 'mass', value=str(mass))
+    moments = {
+        f'i{"xyz"[i]}{"xyz"[j]}': float(inertia[i, j]) for i in range(3) for j in range(i, 3)
+    }
+    ElementTree.SubElement(inertial, 'inertia', {key: str(m) for key, m in moments.items()})
+
+
+def add_capsule(
+    link: ElementTree.Element, end: Vector, angles: Vector, radius: float, colour: str
+) -> None:
+    """Add a capsule from the link's origin to another point."""
+    middle = [x / 2 for x in end]
+    shape = {'radius': str(radius), 'length': str(math.hypot(*end))}
+    add_shape(link, 'cylinder', shape, colour, middle, angles)
+    for centre in (ORIGIN, end):
+        add_shape(link, 'sphere', {'radius': str(radius)}, colour, centre)
+
+
+def add_shape(
+    link: ElementTree.Element,
+    shape: str,
+    size: dict[str, str],
+    colour: str,
+    centre: Vector = ORIGIN,
+    angles: Vector = ORIGIN,
+    kind: str = 'visual',
+) -> None:
+    """Add a shape to what a link shows, or to what of it collides."""
+    element = ElementTree.SubElement(link, kind)
+    add_origin(element, centre, angles)
+    ElementTree.SubElement(ElementTree.SubElement(element, 'geometry'), shape, size)
+    if kind == 'visual':
+        ElementTree.SubElement(element, 'material', name=colour)
+
+
+def add_origin(element: ElementTree.Element, position: Vector, angles: Vector) -> None:
+    """Put an element at a position [m], turned by roll, pitch and yaw [rad]."""
+    ElementTree.SubElement(element, 'origin', xyz=numbers(position), rpy=numbers(angles))
+
+
+def numbers(values: Vector) -> str:
+    """Return numbers as an attribute holds them."""
+    return ' '.join(str(float(value)) for value in values)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
