@@ -98,7 +98,7 @@ def policy_model(agent: TrainedAgent) -> onnx.ModelProto:
 def _layers(
     x: str, policy: MlpPolicy
 ) -> tuple[list[onnx.NodeProto], dict[str, NDArray[np.float32]]]:
-    """Affine layers with ReLU between them, normalised before it or not, and tanh at the end."""
+    """Affine layers with ReLU between them, normalised before it or not, and +-1 at the end."""
     nodes, constants = [], dict[str, NDArray[np.float32]]()
     for number, (weight, bias) in enumerate(policy.layers):
         name, last = f'layer{number}', number == len(policy.layers) - 1
@@ -113,11 +113,14 @@ def _layers(
                 )
             )
             arrays[gain] = np.ones(bias.shape, np.float32)
-        output = _ACTION if last else f'{name}.output'
-        nodes.append(helper.make_node('Tanh' if last else 'Relu', [x], [output]))
         constants |= arrays
-        x = output
-    return nodes, constants
+        if not last:
+            nodes.append(helper.make_node('Relu', [x], [f'{name}.output']))
+            x = f'{name}.output'
+    if policy.squash:
+        return [*nodes, helper.make_node('Tanh', [x], [_ACTION])], constants
+    bounds = {'action.least': np.array(-1.0, np.float32), 'action.most': np.array(1.0, np.float32)}
+    return [*nodes, helper.make_node('Clip', [x, *bounds], [_ACTION])], constants | bounds
 
 
 def contract(agent: TrainedAgent) -> dict[str, str]:

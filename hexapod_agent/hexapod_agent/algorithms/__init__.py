@@ -47,4 +47,16 @@ ALGORITHMS = {
         'hexapod_agent.algorithms.ddpg.learner:DdpgLearner',
         'hexapod_agent.algorithms.ddpg.stack:DdpgStack',
     ),
+    'td3': Algorithm(
+        'hexapod_agent.algorithms.stable_baselines.config:Td3Config',
+        'hexapod_agent.algorithms.stable_baselines.td3:Td3Learner',
+    ),
+    'sac': Algorithm(
+        'hexapod_agent.algorithms.stable_baselines.config:SacConfig',
+        'hexapod_agent.algorithms.stable_baselines.sac:SacLearner',
+    ),
+    'ppo': Algorithm(
+        'hexapod_agent.algorithms.stable_baselines.config:PpoConfig',
+        'hexapod_agent.algorithms.stable_baselines.ppo:PpoLearner',
+    ),
 }

@@ -124,7 +124,7 @@ class Learner(Protocol):
         """Return what acts as `act` does without exploring, and goes on to as this learns."""
 
     def state_dict(self) -> dict[str, Any]:
-        """Return tensors, numbers, text and dicts of them that the future depends on.
+        """Return tensors, numbers, text, dicts and lists of them that the future depends on.
 
         Between two episodes; a learner with the same arguments goes on from it to the last bit.
         """

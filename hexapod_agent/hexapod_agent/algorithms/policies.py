@@ -31,7 +31,7 @@ def random_policy(seed: int) -> Policy:
 
 @dataclass(frozen=True)
 class MlpPolicy:
-    """Affine layers with ReLU between them and tanh at the end; its arrays may be a learner's.
+    """Affine layers with ReLU between them, within +-1 at the end; its arrays may be a learner's.
 
     It computes in numpy: for one observation torch takes several times as long, and rounds as the
     precision of the updates says.
@@ -42,25 +42,39 @@ class MlpPolicy:
             ReLU.
         scale: Center and gain (observation size,) of the inputs, (observation - center) gain
             within +-`SCALED_LIMIT`; None if observations are the inputs.
+        squash: Whether tanh brings the last layer within +-1; else it is clipped there.
     """
 
     layers: tuple[tuple[Array, Array], ...]
     layer_norm: bool = False
     scale: tuple[Array, Array] | None = None
+    squash: bool = True
 
     def __call__(self, observation: Array) -> Array:
         """Return the action for an observation."""
+        return self.bounded(self.outputs(self.features(observation)))
+
+    def features(self, observation: Array) -> Array:
+        """Return what the last hidden layer makes of an observation."""
         features = observation
         if self.scale is not None:
             features = scaled(features, *self.scale)
-        *hidden, (weight_out, bias_out) = self.layers
-        for weight, bias in hidden:
+        for weight, bias in self.layers[:-1]:
             features = weight @ features + bias
             if self.layer_norm:
                 features -= features.mean()
                 features /= np.sqrt(features @ features / features.size + NORM_EPSILON)
             features = np.maximum(features, 0.0)
-        action: Array = np.tanh(weight_out @ features + bias_out)
+        return features
+
+    def outputs(self, features: Array) -> Array:
+        """Return the last layer (action size,), before it is brought within +-1."""
+        weight, bias = self.layers[-1]
+        return weight @ features + bias
+
+    def bounded(self, outputs: Array) -> Array:
+        """Return the action of outputs of the last layer."""
+        action: Array = np.tanh(outputs) if self.squash else outputs.clip(-1.0, 1.0)
         return action
 
     def to_mapping(self) -> dict[str, Any]:
@@ -69,6 +83,7 @@ class MlpPolicy:
             'layers': [list(layer) for layer in self.layers],
             'layer_norm': self.layer_norm,
             'scale': None if self.scale is None else list(self.scale),
+            'squash': self.squash,
         }
 
     @classmethod
@@ -79,6 +94,7 @@ class MlpPolicy:
             tuple((weight, bias) for weight, bias in content['layers']),
             content['layer_norm'],
             None if scale is None else (scale[0], scale[1]),
+            content.get('squash', True),  # there was nothing else
         )
 
 

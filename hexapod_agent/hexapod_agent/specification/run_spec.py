@@ -154,7 +154,8 @@ class RunSpec:
             ConfigError: A text is not of this form, a key is unknown, or a value is not allowed.
         """
         spec, sources = self, []
-        for setting in settings:
+        algorithm = 'learner.algorithm='  # whose sections are there once it is chosen
+        for setting in sorted(settings, key=lambda each: not each.startswith(algorithm)):
             sources.append(f'--set {setting}')
             changes = nest(*parsed_setting(setting))
             spec = _built(spec.to_mapping(), changes, sources[-1])

@@ -40,7 +40,7 @@ def test_a_specification_has_the_sections_of_its_algorithm(search, small_config)
 
 @pytest.mark.parametrize('name', ['ppo2', '', 3, None, ['ddpg']])
 def test_an_unknown_algorithm_is_one_clear_error(small_config, name):
-    with pytest.raises(ConfigError, match=r'learner.algorithm is .*, expected one of ddpg$'):
+    with pytest.raises(ConfigError, match=r'learner.algorithm is .*, expected one of ddpg, td3,'):
         small_config.with_value('learner.algorithm', name, 'a test')
 
 
@@ -73,8 +73,11 @@ def test_a_specification_loads_no_torch():
     subprocess.run([sys.executable, '-c', code], check=True)
 
 
-def test_making_a_trainer_and_loading_an_agent_set_nothing_of_torch(small_config, tmp_path):
+def test_a_trainer_of_ddpg_sets_nothing_of_torch_and_loads_no_other_algorithm(
+    small_config, tmp_path
+):
     code = f"""
+import sys
 import torch
 from hexapod_agent.deployment import agent_file
 from hexapod_agent.learning import checkpoint
@@ -85,6 +88,7 @@ checkpoint.save_agent('{tmp_path}/a.pt', Trainer(RunSpec.load(), 1))
 agent_file.load('{tmp_path}/a.pt')
 assert torch.get_num_threads() == 3
 assert torch.get_float32_matmul_precision() == 'highest'
+assert 'stable_baselines3' not in sys.modules
 """
     subprocess.run([sys.executable, '-c', code], check=True)
     assert Trainer(small_config, 1).learner.metric_names == ('critic_loss', 'actor_loss', 'mean_q')

@@ -57,6 +57,24 @@ def full_config() -> RunSpec:
     return RunSpec.from_mapping(changes, 'full_config')
 
 
+@pytest.fixture(scope='session')
+def library_configs() -> list[RunSpec]:
+    """TD3, SAC and PPO with networks of the article's size; episodes of 40 steps."""
+    groups = {'batch_size': 32, 'buffer_size': 5000, 'update_every': 8, 'update_ratio': 0.5}
+    sections = {'td3': groups, 'sac': groups, 'ppo': {'rollout_steps': 30, 'batch_size': 15}}
+    return [
+        RunSpec.from_mapping(
+            {
+                'task': {'time_limit_steps': 40},
+                'learner': {'algorithm': name, name: section},
+                'training': {'evaluation': 1},
+            },
+            name,
+        )
+        for name, section in sections.items()
+    ]
+
+
 @pytest.fixture
 def new_run() -> Callable[..., NotedRun]:
     def make(config: RunSpec, observations: str, seed: int, episodes: int = 2) -> NotedRun:

@@ -30,6 +30,9 @@ def assert_equal(ours, theirs) -> None:
         assert ours.keys() == theirs.keys()
         for key in ours:
             assert_equal(ours[key], theirs[key])
+    elif isinstance(ours, list):
+        for mine, other in zip(ours, theirs, strict=True):
+            assert_equal(mine, other)
     elif isinstance(ours, torch.Tensor):
         assert torch.equal(ours, theirs)
     else:
@@ -58,6 +61,21 @@ def test_runs_equal_those_trained_alone_to_the_last_bit(
     train_fleet(fleet, num_slots=2, threads=threads)
     for run, (letters, seed) in zip(fleet, RUNS, strict=True):
         alone = train_alone(new_run(full_config, letters, seed))
+        assert run.end == 'ended'
+        assert run.summaries[-1].metrics['updates'] > 0
+        assert_same_results(run, alone)
+        assert_same_state(run, alone)
+
+
+def test_each_algorithm_learns_in_a_mixed_fleet_as_alone(
+    library_configs, new_run, train_alone, train_fleet
+):
+    # Three algorithms on two threads, and two runs of one at a time.
+    configs = [*library_configs, library_configs[1]]
+    fleet = [new_run(config, 'ABCDE', seed) for seed, config in enumerate(configs)]
+    train_fleet(fleet, num_slots=4, threads=2)
+    for seed, (run, config) in enumerate(zip(fleet, configs, strict=True)):
+        alone = train_alone(new_run(config, 'ABCDE', seed))
         assert run.end == 'ended'
         assert run.summaries[-1].metrics['updates'] > 0
         assert_same_results(run, alone)

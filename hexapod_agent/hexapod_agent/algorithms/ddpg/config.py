@@ -4,7 +4,6 @@
 """DDPG's section of a specification; article.yaml holds and explains every value."""
 
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Literal
 
 from hexapod_agent.algorithms.learner import LearnerConfig
@@ -18,6 +17,7 @@ from hexapod_agent.algorithms.ranges import (
     Share,
     Value,
 )
+from hexapod_agent.algorithms.update_groups import check_groups, group_size
 
 
 @dataclass(frozen=True)
@@ -103,16 +103,7 @@ class UpdateConfig:
         Raises:
             ValueError: They are not a whole number.
         """
-        # As written, not as stored: 0.1 of 10 steps is one update.
-        updates = Fraction(str(self.update_ratio)) * self.update_every
-        if updates.denominator != 1:
-            raise ValueError(
-                f'learner.ddpg.update_ratio is {self.update_ratio}, expected a multiple of '
-                f'1/{self.update_every}: after each {self.update_every} steps '
-                '(learner.ddpg.update_every) comes a whole number of updates, not '
-                f'{float(updates):g}'
-            )
-        return updates.numerator
+        return group_size('ddpg', self)
 
 
 @dataclass(frozen=True)
@@ -137,14 +128,4 @@ class DdpgConfig(LearnerConfig):
 
     def check_training(self, episode_steps: int) -> None:
         """Refuse groups of updates and batches that no run of such episodes comes to."""
-        ddpg = self.ddpg
-        if ddpg.update_every > episode_steps:
-            raise ValueError(
-                f'learner.ddpg.update_every is {ddpg.update_every}, expected at most '
-                f'task.time_limit_steps, {episode_steps}: nothing would be learned'
-            )
-        if ddpg.buffer_size <= ddpg.batch_size:
-            raise ValueError(
-                f'learner.ddpg.buffer_size is {ddpg.buffer_size}, expected more than '
-                f'learner.ddpg.batch_size, {ddpg.batch_size}: nothing would be learned'
-            )
+        check_groups('ddpg', self.ddpg, episode_steps)
