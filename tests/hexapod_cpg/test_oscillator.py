@@ -206,6 +206,20 @@ def test_batches_repeat_single_robots_to_the_last_bit(swing_stance: bool) -> Non
         np.testing.assert_array_equal(single[1], ys[index])
 
 
+def test_a_trajectory_gone_through_before_is_the_same_and_nobody_can_spoil_it() -> None:
+    config = HopfConfig.of_article()
+    x, y = start_state(config)
+    first, again = (trajectory(x, y, MU, FREQUENCY, config) for _ in range(2))
+    computed = trajectory(*(each[None] for each in (x, y, MU, FREQUENCY)), config)
+    for part, repeated, expected in zip(first, again, computed, strict=True):
+        np.testing.assert_array_equal(part, expected[0])
+        np.testing.assert_array_equal(repeated, expected[0])
+        with pytest.raises(ValueError, match='read-only'):
+            part += 1.0
+    other = trajectory(x, y, MU, np.nextafter(FREQUENCY, 0.0), config)
+    assert (other[0] != first[0]).any()
+
+
 def test_arguments_are_left_alone() -> None:
     x, y = start_state(HopfConfig.of_article())
     arguments = (x, y, MU.copy(), FREQUENCY.copy())
