@@ -13,7 +13,7 @@ import weakref
 
 import pytest
 import rclpy
-from hexapod_node.intra_process import LockStepPublisher, LockStepSubscription
+from hexapod_node.intra_process import LockStepPublisher, LockStepSubscription, Routes
 from hexapod_node.qos import LOCK_STEP
 from rclpy.node import Node
 from std_msgs.msg import String
@@ -118,6 +118,22 @@ def test_somebody_outside_misses_nothing_and_nobody_gets_it_twice(pair: Pair) ->
         outside.wait()
     settle(pair.graph)
     assert pair.heard == ['before', 'a', 'b', 'c']
+
+
+def test_routes_of_several_publishers_stay_until_somebody_comes_or_goes(pair: Pair) -> None:
+    unheard = LockStepPublisher(pair.talker, String, 'unheard')
+    routes = Routes(pair.talker, {'topic': pair.publisher, 'unheard': unheard})
+    opened = routes.open()
+    assert list(opened) == ['topic']
+    opened['topic'](String(data='a'))
+    assert pair.heard == ['a']
+    unheard.get_subscription_count()  # has all look again
+    assert routes.open() is opened
+    LockStepSubscription(pair.listener, String, 'unheard', lambda message: None)
+    pair.graph.until(lambda: unheard.get_subscription_count() == 1)
+    assert list(routes.open()) == ['topic', 'unheard']
+    pair.subscription.destroy()
+    assert list(routes.open()) == ['unheard']
 
 
 def test_who_has_left_hears_nothing(pair: Pair) -> None:

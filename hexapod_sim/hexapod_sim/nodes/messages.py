@@ -3,6 +3,7 @@
 
 """Sensor readings as the ROS messages that real devices publish, and joint targets back."""
 
+from array import array
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,6 +11,7 @@ from typing import Any
 
 import numpy as np
 from geometry_msgs.msg import Vector3
+from hexapod_interfaces.msg import StepOutcome
 from hexapod_node.invalid_message import InvalidMessageError
 from hexapod_node.raw_topics import message_class
 from nav_msgs.msg import Odometry
@@ -22,6 +24,7 @@ from hexapod_sim.robot import BASE_FRAME, JOINTS, ODOM_FRAME, SUBSTEPS
 from hexapod_sim.sensor_table import CHANNELS
 from hexapod_sim.sensors import read
 from hexapod_sim.simulation import Simulation
+from hexapod_sim.task import Outcome
 
 
 @dataclass(frozen=True)
@@ -33,7 +36,7 @@ class SensorTopic:
     """Which of the channel's topics."""
     message_type: type
 
-    @property
+    @cached_property
     def name(self) -> str:
         """Relative name of the topic."""
         return self.channel.topics[self.index]
@@ -118,3 +121,14 @@ def fill_odometry(message: Odometry, simulation: Simulation) -> None:
     orientation.x, orientation.y, orientation.z, orientation.w = simulation.orientation.tolist()
     _set_vector(twist.linear, readings['linear_velocity'])
     _set_vector(twist.angular, readings['angular_velocity'])
+
+
+def fill_outcome(message: StepOutcome, outcome: Outcome) -> None:
+    """Write what a control period earned."""
+    message.step = outcome.step
+    message.reward = outcome.reward
+    message.term_names = list(outcome.terms)
+    message.term_values = array('d', outcome.terms.values())
+    message.terminated = outcome.terminated
+    message.truncated = outcome.truncated
+    message.cause = outcome.cause

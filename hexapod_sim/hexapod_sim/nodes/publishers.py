@@ -5,21 +5,29 @@
 
 from __future__ import annotations
 
-from array import array
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from builtin_interfaces.msg import Time
 from hexapod_interfaces.msg import StepOutcome
-from hexapod_node.intra_process import LockStepPublisher
+from hexapod_node.intra_process import LockStepPublisher, Publish, Routes
 from hexapod_node.stamps import time_message
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 
-from hexapod_sim.nodes.messages import SENSOR_TOPICS, fill_odometry, new_odometry
+from hexapod_sim.channel import Channel
+from hexapod_sim.nodes.messages import (
+    SENSOR_TOPICS,
+    SensorTopic,
+    fill_odometry,
+    fill_outcome,
+    new_odometry,
+)
 from hexapod_sim.task import LineTask, Outcome
 
 if TYPE_CHECKING:
     from rclpy.node import Node
+
+OUTCOME, ODOMETRY, CLOCK = 'step_outcome', 'odom', 'clock'
 
 
 class SimPublishers:
@@ -30,54 +38,44 @@ class SimPublishers:
 
     def __init__(self, node: Node, task: LineTask) -> None:
         self._task = task
-        self._sensors = [
-            (
-                sensor,
-                sensor.new(),
-                LockStepPublisher(node, sensor.message_type, sensor.name),
-            )
-            for sensor in SENSOR_TOPICS
-        ]
-        self._outcome = StepOutcome()
-        self._outcome_publisher = LockStepPublisher(node, StepOutcome, 'step_outcome')
-        self._odometry = new_odometry()
-        self._odometry_publisher = LockStepPublisher(node, Odometry, 'odom')
+        self._messages = {topic.name: topic.new() for topic in SENSOR_TOPICS}
+        self._odometry, self._outcome = new_odometry(), StepOutcome()
+        types = {topic.name: topic.message_type for topic in SENSOR_TOPICS}
         # Relative: in the root namespace this is /clock, and workers side by side do not clash.
-        self._clock_publisher = LockStepPublisher(node, Clock, 'clock')
-        self.all: list[LockStepPublisher] = [
-            *(publisher for _, _, publisher in self._sensors),
-            self._outcome_publisher,
-            self._odometry_publisher,
-            self._clock_publisher,
-        ]
+        types |= {OUTCOME: StepOutcome, ODOMETRY: Odometry, CLOCK: Clock}
+        publishers = {name: LockStepPublisher(node, kind, name) for name, kind in types.items()}
+        self.all = list(publishers.values())
+        self._routes = Routes(node, publishers)
+        self._open: Mapping[str, Publish] = {}
+        self._heard: list[SensorTopic] = []
+        self._channels: list[Channel] = []
 
     def publish(self, outcome: Outcome, now_ns: int) -> None:
         """Publish the sample of now: sensors first, then what they earned, then the clock."""
-        stamp = time_message(now_ns)
-        routes = [(*entry, publisher.route()) for *entry, publisher in self._sensors]
-        heard = [(sensor, message, publish) for sensor, message, publish in routes if publish]
-        channels = {sensor.channel.key: sensor.channel for sensor, _, _ in heard}
-        readings = {key: self._task.sensors.read(row) for key, row in channels.items()}
-        for sensor, message, publish in heard:
+        self._look()
+        stamp, publish = time_message(now_ns), self._open
+        readings = {row.key: self._task.sensors.read(row) for row in self._channels}
+        for topic in self._heard:
+            message = self._messages[topic.name]
             message.header.stamp = stamp
-            sensor.fill(message, readings[sensor.channel.key])
-            publish(message)
-        if publish := self._odometry_publisher.route():
+            topic.fill(message, readings[topic.channel.key])
+            publish[topic.name](message)
+        if ODOMETRY in publish:
             fill_odometry(self._odometry, self._task.simulation)
             self._odometry.header.stamp = stamp
-            publish(self._odometry)
-        self._publish_outcome(outcome, stamp)
-        if publish := self._clock_publisher.route():
-            publish(Clock(clock=stamp))
+            publish[ODOMETRY](self._odometry)
+        if OUTCOME in publish:
+            fill_outcome(self._outcome, outcome)
+            self._outcome.header.stamp = stamp
+            publish[OUTCOME](self._outcome)
+        if CLOCK in publish:
+            publish[CLOCK](Clock(clock=stamp))
 
-    def _publish_outcome(self, outcome: Outcome, stamp: Time) -> None:
-        message = self._outcome
-        message.header.stamp = stamp
-        message.step = outcome.step
-        message.reward = outcome.reward
-        message.term_names = list(outcome.terms)
-        message.term_values = array('d', outcome.terms.values())
-        message.terminated = outcome.terminated
-        message.truncated = outcome.truncated
-        message.cause = outcome.cause
-        self._outcome_publisher.publish(message)
+    def _look(self) -> None:
+        """Find out what somebody hears, where that may have changed."""
+        if (routes := self._routes.open()) is self._open:
+            return
+        self._open = routes
+        self._heard = [topic for topic in SENSOR_TOPICS if topic.name in routes]
+        channels = {topic.channel.key: topic.channel for topic in self._heard}
+        self._channels = list(channels.values())

@@ -6,8 +6,8 @@
 rclcpp does so for composed nodes; rclpy does not. Every endpoint is on the ROS graph as ever, and
 a topic that somebody outside of the process listens to goes through the middleware, to everybody.
 
-To ask the middleware who listens takes as long as to hand a sample over. A publisher asks when
-somebody waits for listeners, when one of its process comes or goes, and every few milliseconds.
+To ask the middleware who listens takes as long as to hand a sample over. Publishers ask when
+somebody waits for listeners, when one of their process comes or goes, and every few milliseconds.
 """
 
 import functools
@@ -15,7 +15,7 @@ import itertools
 import math
 import time
 from collections import defaultdict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 from weakref import WeakKeyDictionary, WeakValueDictionary
 
@@ -31,24 +31,38 @@ _LOOK_AGAIN_S = 0.01  # a listener from elsewhere that nobody waits for is serve
 
 
 class _Neighbours:
-    """The subscriptions of one topic that the nodes of a context have.
+    """The subscriptions that the nodes of a context have.
 
     Attributes:
-        by_number: In the order of their making; nothing here may keep a node alive.
-        changes: How often one came or was destroyed.
+        by_topic: By number, in the order of their making; nothing here may keep a node alive.
     """
 
     def __init__(self) -> None:
-        self.by_number: WeakValueDictionary[int, LockStepSubscription] = WeakValueDictionary()
-        self.changes = 0
+        self.by_topic: defaultdict[str, WeakValueDictionary[int, LockStepSubscription]] = (
+            defaultdict(WeakValueDictionary)
+        )
+        self._changes = 0
+        self._looked_s = -math.inf
+
+    def change(self) -> None:
+        """Have every publisher look again who listens, before its next sample."""
+        self._changes += 1
+
+    def changes(self) -> int:
+        """Return a number that stays the same for as long as nobody needs to look again."""
+        now_s = time.monotonic()
+        if now_s - self._looked_s > _LOOK_AGAIN_S:
+            self._looked_s = now_s
+            self._changes += 1
+        return self._changes
 
 
-_neighbours: WeakKeyDictionary[Context, defaultdict[str, _Neighbours]] = WeakKeyDictionary()
+_neighbours: WeakKeyDictionary[Context, _Neighbours] = WeakKeyDictionary()
 _numbers = itertools.count()
 
 
-def _neighbours_at(node: Node, topic: str) -> _Neighbours:
-    return _neighbours.setdefault(node.context, defaultdict(_Neighbours))[topic]
+def _neighbours_of(node: Node) -> _Neighbours:
+    return _neighbours.setdefault(node.context, _Neighbours())
 
 
 class LockStepSubscription:
@@ -65,15 +79,15 @@ class LockStepSubscription:
         self._subscription = node.create_subscription(kind, topic, self._on_message, LOCK_STEP)
         self.topic_name: str = self._subscription.topic_name
         self._number = next(_numbers)
-        neighbours = _neighbours_at(node, self.topic_name)
-        neighbours.by_number[self._number] = self
-        neighbours.changes += 1
+        neighbours = _neighbours_of(node)
+        neighbours.by_topic[self.topic_name][self._number] = self
+        neighbours.change()
 
     def destroy(self) -> None:
         """Unsubscribe."""
-        neighbours = _neighbours_at(self._node, self.topic_name)
-        neighbours.by_number.pop(self._number)
-        neighbours.changes += 1
+        neighbours = _neighbours_of(self._node)
+        neighbours.by_topic[self.topic_name].pop(self._number)
+        neighbours.change()
         self._node.destroy_subscription(self._subscription)
 
     def _on_message(self, message: Any) -> None:
@@ -98,9 +112,8 @@ class LockStepPublisher:
     def __init__(self, node: Node, kind: type, topic: str) -> None:
         self._publisher = node.create_publisher(kind, topic, LOCK_STEP)
         self.topic_name: str = self._publisher.topic_name
-        self._neighbours = _neighbours_at(node, self.topic_name)
+        self._neighbours = _neighbours_of(node)
         self._route: Publish | None = None
-        self._looked_s = -math.inf
         self._changes_seen = 0
 
     def get_subscription_count(self) -> int:
@@ -108,7 +121,7 @@ class LockStepPublisher:
 
         All of them get the next sample: who waits until its listeners are there may rely on it.
         """
-        self._looked_s = -math.inf
+        self._neighbours.change()
         return int(self._publisher.get_subscription_count())
 
     def route(self) -> Publish | None:
@@ -116,10 +129,10 @@ class LockStepPublisher:
 
         The message may be used again for the next sample.
         """
-        now_s, changes = time.monotonic(), self._neighbours.changes
-        if now_s - self._looked_s > _LOOK_AGAIN_S or changes != self._changes_seen:
+        changes = self._neighbours.changes()
+        if changes != self._changes_seen:
             self._route = self._look()
-            self._looked_s, self._changes_seen = now_s, changes
+            self._changes_seen = changes
         return self._route
 
     def _look(self) -> Publish | None:
@@ -127,7 +140,8 @@ class LockStepPublisher:
         listeners = self._publisher.get_subscription_count()
         if not listeners:
             return None
-        matched = [each for each in self._neighbours.by_number.values() if each.is_matched()]
+        neighbours = self._neighbours.by_topic[self.topic_name]
+        matched = [each for each in neighbours.values() if each.is_matched()]
         if len(matched) < listeners:
             return self._publisher.publish
         if len(matched) == 1:
@@ -138,3 +152,27 @@ class LockStepPublisher:
         """Publish a sample."""
         if (publish := self.route()) is not None:
             publish(message)
+
+
+class Routes:
+    """The routes of several publishers, by their names, looked for together."""
+
+    def __init__(self, node: Node, publishers: Mapping[str, LockStepPublisher]) -> None:
+        self._neighbours = _neighbours_of(node)
+        self._publishers = publishers
+        self._routes: dict[str, Publish] = {}
+        self._changes_seen = 0
+
+    def open(self) -> Mapping[str, Publish]:
+        """Return `LockStepPublisher.route` of those that somebody listens to.
+
+        It is the same object as before where nobody came or went.
+        """
+        changes = self._neighbours.changes()
+        if changes != self._changes_seen:
+            self._changes_seen = changes
+            found = {key: each.route() for key, each in self._publishers.items()}
+            routes = {key: route for key, route in found.items() if route is not None}
+            if routes != self._routes:
+                self._routes = routes
+        return self._routes

@@ -18,6 +18,9 @@ from hexapod_node.stamps import to_nanoseconds
 from hexapod_node.timers import call_every
 
 _WATCH_PERIOD_S = 0.5
+# Control periods after which the executor has a turn, where nobody has to be waited for: a turn
+# takes as long as handing out a period.
+_PERIODS_A_TURN = 8
 
 
 class LockStepTimeoutError(TimeoutError):
@@ -38,6 +41,7 @@ class LockStep:
         self._gate = StampGate(topics, period_ns)
         self._arrival: Future | None = None
         self._waiting_since = 0.0
+        self._since_turn = 0
         self._subscriptions = [
             LockStepSubscription(node, kind, topic, partial(self._on_message, topic))
             for topic, kind in topics.items()
@@ -68,12 +72,15 @@ class LockStep:
         Raises:
             LockStepTimeoutError: a topic stayed silent; the text names it and its stamp.
         """
-        if self._gate.complete:
-            await pause(self._node)  # nodes of this process answer at once; others have a turn
-        else:
+        self._since_turn += 1
+        if not self._gate.complete:
+            self._since_turn = 0
             self._arrival = Future()
             self._waiting_since = time.monotonic()
             await until(self._arrival)
+        elif self._since_turn >= _PERIODS_A_TURN:
+            self._since_turn = 0
+            await pause(self._node)  # nodes of this process answer at once; others have a turn
         return self._gate.take()
 
     def destroy(self) -> None:

@@ -31,7 +31,8 @@ def duration_message(nanoseconds: int) -> Duration:
 
 def to_nanoseconds(message: Time | Duration) -> int:
     """Return the whole nanoseconds of a stamp or a duration."""
-    return int(message.sec) * NANOSECONDS + int(message.nanosec)
+    nanoseconds: int = message.sec * NANOSECONDS + message.nanosec
+    return nanoseconds
 
 
 def requested_start_ns(message: Time) -> int:
