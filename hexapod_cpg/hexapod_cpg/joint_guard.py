@@ -40,9 +40,10 @@ class JointGuard:
 
         The rate is watched, not changed.
         """
-        limited = np.clip(targets, robot.JOINT_LOWER, robot.JOINT_UPPER)
-        self.beyond_limit += not np.array_equal(limited, targets)
-        steps = np.diff(limited, axis=0, prepend=self.position[None])
+        limited = targets.clip(robot.JOINT_LOWER, robot.JOINT_UPPER)
+        self.beyond_limit += bool((limited != targets).any())
+        path = np.concatenate((self.position[None], limited))
+        steps = path[1:] - path[:-1]
         self.beyond_rate += bool(np.abs(steps).max() > self._max_step)
         self.position = limited[-1].copy()
         return limited

@@ -12,6 +12,7 @@ b_k, k_a, b_a); reading D2 takes (mu, omega, k_h, k_k, k_a) and leaves the biase
 """
 
 from dataclasses import dataclass, fields
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
@@ -96,16 +97,22 @@ def command_from_action(action: np.ndarray, reading: str, ranges: ActionRanges) 
     if action.shape[-1:] != (ACTION_SIZE,):
         raise ValueError(f'action: expected shape (..., {ACTION_SIZE}), got {action.shape}')
     shape = action.shape[:-1]
-    columns = action.reshape(*shape, _LEGS, ACTIONS_PER_LEG)
-    values = {}
-    for name in COMMAND_FIELDS:
-        centre, half_width = getattr(ranges, name)
-        if name in READINGS[reading]:
-            column = columns[..., READINGS[reading].index(name)]
-            values[name] = centre + half_width * column
-        else:
-            values[name] = np.full((*shape, _LEGS), centre)
-    return Command(**values)
+    centres, half_widths, constants = _columns(reading, ranges)
+    values = centres + half_widths * action.reshape(*shape, _LEGS, ACTIONS_PER_LEG)
+    fields = {name: values[..., index] for index, name in enumerate(READINGS[reading])}
+    for name, centre in constants.items():
+        fields[name] = np.full((*shape, _LEGS), centre)
+    return Command(**fields)
+
+
+@lru_cache(maxsize=16)
+def _columns(
+    reading: str, ranges: ActionRanges
+) -> tuple[np.ndarray, np.ndarray, dict[str, float]]:
+    """Return centre and half width of a leg's actions (5,), and the centre of other fields."""
+    centres, half_widths = np.array([getattr(ranges, name) for name in READINGS[reading]]).T
+    others = [name for name in COMMAND_FIELDS if name not in READINGS[reading]]
+    return centres, half_widths, {name: getattr(ranges, name)[0] for name in others}
 
 
 def action_from_command(command: Command, reading: str, ranges: ActionRanges) -> np.ndarray:

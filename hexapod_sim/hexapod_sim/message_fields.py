@@ -43,7 +43,8 @@ def _reader(message: Any, path: str) -> Callable[[Any], Numbers]:
     get = attrgetter(path)
     value = get(message)
     if hasattr(value, 'x'):
-        get_axes = attrgetter(*(f'{path}.{axis}' for axis in _axes(value)))
+        axes = 'xyzw' if hasattr(value, 'w') else 'xyz'
+        get_axes = attrgetter(*(f'{path}.{axis}' for axis in axes))
         return lambda message: np.array(get_axes(message), dtype=np.float64)
     if np.ndim(value):
         return lambda message: np.array(get(message), dtype=np.float64)
@@ -55,14 +56,17 @@ def _writer(message: Any, path: str) -> Callable[[Any, Numbers], None]:
     owner = attrgetter(owner_path) if owner_path else _itself
     had = getattr(owner(message), name)
     if hasattr(had, 'x'):
-        axes, get = _axes(had), attrgetter(path)
+        get = attrgetter(path)
 
-        def write_axes(message: Any, values: Numbers) -> None:
+        def write_vector(message: Any, values: Numbers) -> None:
             vector = get(message)
-            for axis, value in zip(axes, values.tolist(), strict=True):
-                setattr(vector, axis, value)
+            vector.x, vector.y, vector.z = values.tolist()
 
-        return write_axes
+        def write_quaternion(message: Any, values: Numbers) -> None:
+            quaternion = get(message)
+            quaternion.x, quaternion.y, quaternion.z, quaternion.w = values.tolist()
+
+        return write_quaternion if hasattr(had, 'w') else write_vector
     if isinstance(had, float):
         return lambda message, values: setattr(owner(message), name, float(values[0]))
     if isinstance(had, array):
@@ -72,7 +76,3 @@ def _writer(message: Any, path: str) -> Callable[[Any, Numbers], None]:
 
 def _itself(message: Any) -> Any:
     return message
-
-
-def _axes(value: Any) -> str:
-    return 'xyzw' if hasattr(value, 'w') else 'xyz'

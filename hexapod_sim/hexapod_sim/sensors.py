@@ -37,7 +37,7 @@ def read(simulation: Simulation, readings: Iterable[str]) -> dict[str, Numbers]:
 def _read(simulation: Simulation, reading: str) -> Numbers:
     """Copy a field's part of the sensor array and convert it."""
     field = MEASURED[reading]
-    block: Numbers = simulation.data.sensordata[simulation.sensor_blocks[reading]]
+    block: Numbers = simulation.sensordata[simulation.sensor_blocks[reading]]
     return field.carried(block.copy() if field.convert is None else field.convert(block))
 
 

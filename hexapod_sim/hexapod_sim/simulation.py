@@ -36,7 +36,8 @@ class Simulation:
         world: What it is built of.
         model: The compiled hexapod.xml on the ground of its scene.
         data: State of the model; sensor readings are those at the end of the last period.
-        sensor_blocks: Where the sensors of each reading lie in ``data.sensordata``.
+        sensordata: The data's sensor readings, all in a row.
+        sensor_blocks: Where the sensors of each reading lie in ``sensordata``.
     """
 
     def __init__(self, world: World | None = None) -> None:
@@ -62,10 +63,11 @@ class Simulation:
         self._ctrl = data.ctrl
         self._qpos = data.qpos
         self._qvel = data.qvel
+        self.sensordata = data.sensordata
 
     def __getstate__(self) -> dict[str, Any]:
         state = vars(self).copy()
-        for name in ('model', '_options', '_ctrl', '_qpos', '_qvel'):
+        for name in ('model', '_options', '_ctrl', '_qpos', '_qvel', 'sensordata'):
             del state[name]
         return state
 

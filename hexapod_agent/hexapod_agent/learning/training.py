@@ -121,6 +121,8 @@ class Trainer:
         Raises:
             TrainingDivergedError: It is not finite.
         """
+        if not metrics:
+            return
         for name, values in metrics.items():
             if not np.isfinite(values).all():
                 value = values[~np.isfinite(values)][0]

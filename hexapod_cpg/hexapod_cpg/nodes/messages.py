@@ -42,16 +42,17 @@ def command_from_message(message: CpgCommand) -> Command:
     Raises:
         InvalidMessageError: a field holds a number that is not finite; the text names the field.
     """
-    values = {}
-    for field in COMMAND_FIELDS:
-        value = np.asarray(getattr(message, field), dtype=np.float64)
-        if not np.isfinite(value).all():
-            raise InvalidMessageError(
-                'not_finite',
-                f'cpg/command: {field} is {value.tolist()}, expected 6 finite numbers',
-            )
-        values[field] = value
-    return Command(**values)
+    values = [np.asarray(getattr(message, field), dtype=np.float64) for field in COMMAND_FIELDS]
+    if not np.isfinite(np.concatenate(values)).all():
+        field, value = next(
+            (field, value)
+            for field, value in zip(COMMAND_FIELDS, values, strict=True)
+            if not np.isfinite(value).all()
+        )
+        raise InvalidMessageError(
+            'not_finite', f'cpg/command: {field} is {value.tolist()}, expected 6 finite numbers'
+        )
+    return Command(*values)
 
 
 def pose_from_message(message: JointState) -> NDArray[np.float64]:
