@@ -133,8 +133,8 @@ def trajectory(
     """
     if x.ndim > 1:
         return _integrated(x, y, mu, frequency, config)
-    numbers = (np.asarray(array, np.float64).tobytes() for array in (x, y, mu, frequency))
-    return _remembered(*numbers, config)
+    arrays = (np.asarray(array, np.float64) for array in (x, y, mu, frequency))
+    return _remembered(*(array.tobytes() for array in arrays), config)
 
 
 @lru_cache(maxsize=_PERIODS_KEPT)
@@ -146,7 +146,8 @@ def _remembered(
     Where no action sets radius or frequency, every episode has the same oscillations, and
     integrating them takes as long as the physics.
     """
-    parts = _integrated(*(np.frombuffer(numbers) for numbers in (x, y, mu, frequency)), config)
+    x0, y0, radius, turn = (np.frombuffer(numbers) for numbers in (x, y, mu, frequency))
+    parts = _integrated(x0, y0, radius, turn, config)
     for part in parts:
         part.flags.writeable = False
     return parts
