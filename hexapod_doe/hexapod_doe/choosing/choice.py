@@ -1,7 +1,10 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The recommended combination, by the two-part model where runs failed, and its record."""
+"""The recommended combination, by the two-part model where runs failed, and its record.
+
+`decide` finds the choice alone, as a small part of the whole analysis.
+"""
 
 from dataclasses import dataclass
 
@@ -9,10 +12,11 @@ import numpy as np
 
 from hexapod_doe.choosing.draws import draw_count, interval_of
 from hexapod_doe.choosing.failure import Threshold, failure_threshold
-from hexapod_doe.choosing.outlook import Outlook, two_part_outlook
+from hexapod_doe.choosing.outlook import Outlook, final_outlook, two_part_outlook
 from hexapod_doe.choosing.two_part import Parts, fit_parts, select_parts
 from hexapod_doe.fitting.logistic import lack_of_fit
 from hexapod_doe.fitting.model import corners, labels, model_matrix
+from hexapod_doe.modelling.pipeline import run
 from hexapod_doe.records.findings import Estimate, TwoPart
 from hexapod_doe.records.options import Options
 from hexapod_doe.tables.table import RunTable
@@ -28,19 +32,50 @@ class Failures:
     """Which rows failed (n,)."""
 
 
+@dataclass(frozen=True)
+class _BothParts:
+    """The two-part model before and after elimination."""
+
+    threshold: Threshold
+    stated: Parts
+    selected: Parts
+
+
 def model_failures(table: RunTable, options: Options, rng: np.random.Generator) -> Failures | None:
     """Model the failures; None if no run failed by the rule, or too few to be modelled."""
+    found = _both_parts(table, options)
+    if found is None:
+        return None
+    outlook = two_part_outlook(found.selected, found.stated, rng)
+    record = _record(
+        table, found.threshold, found.stated, found.selected, outlook, options.level, rng
+    )
+    return Failures(record, outlook, table.values < found.threshold.value)
+
+
+def decide(table: RunTable, options: Options) -> Outlook:
+    """Return what `analyse` chooses from, without all else that it finds.
+
+    Raises:
+        TableError: The table does not allow what the options ask for.
+        AliasedTermsError: The named terms cannot be told apart.
+        AnalysisError: An option cannot be read.
+    """
+    rng = np.random.default_rng(options.seed)
+    found = None if options.article else _both_parts(table, options)
+    if found is not None:
+        return two_part_outlook(found.selected, found.stated, rng)
+    return final_outlook(run(table, options.as_article() if options.article else options), rng)
+
+
+def _both_parts(table: RunTable, options: Options) -> _BothParts | None:
     case = table.rows['case'].to_numpy()
     threshold = failure_threshold(table.values, case, options.failure_threshold)
-    if threshold is None:
-        return None
-    stated = fit_parts(table, threshold.value, options.alpha)
-    if stated is None:
+    stated = None if threshold is None else fit_parts(table, threshold.value, options.alpha)
+    if threshold is None or stated is None:
         return None
     selected = select_parts(table, stated, threshold.value, options.alpha)
-    outlook = two_part_outlook(selected, stated, rng)
-    record = _record(table, threshold, stated, selected, outlook, options.level, rng)
-    return Failures(record, outlook, table.values < threshold.value)
+    return _BothParts(threshold, stated, selected)
 
 
 def _record(

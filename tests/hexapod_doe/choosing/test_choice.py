@@ -1,0 +1,18 @@
+# Copyright 2026 The hexapod authors
+# SPDX-License-Identifier: Apache-2.0
+
+import numpy as np
+from hexapod_doe.analysis.analysis import analyse
+from hexapod_doe.choosing.choice import decide
+from hexapod_doe.designs.design import fraction
+from hexapod_doe.records.options import Options
+from simulated import Truth, repeated_levels, table_of
+
+
+def test_what_is_decided_alone_is_what_the_analysis_decides() -> None:
+    levels = repeated_levels(fraction('eighth'), 4)
+    table = table_of(levels, Truth().simulate(levels, np.random.default_rng(2)))
+    whole, alone = analyse([table], Options()), decide(table, Options())
+    assert whole.two_part is not None
+    assert alone.ranking[0] == whole.choice
+    assert alone.ranking == whole.two_part.ranking
