@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -e -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help setup other-ros demo check test test-slow lint type format bench bench-learner film clean clean-demo
+.PHONY: help setup other-ros demo check test test-slow lint type format study bench bench-learner film clean clean-demo
 
 VENV ?= .venv
 PACKAGES := hexapod_sim hexapod_cpg hexapod_agent hexapod_doe
@@ -14,6 +14,7 @@ INSTALLED := $(shell find $(CODE) -name setup.py -o -name setup.cfg -o -name pac
 ENTER := export HEXAPOD_VENV='$(abspath $(VENV))'; source setup.bash
 DEMO := bags/demo
 DEMO_EPISODES := 4
+STUDY := bags/study
 
 help:  ## list the verbs
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -50,6 +51,9 @@ demo: setup  ## run a small real campaign through the graph, to a report
 	@$(ENTER); python -m hexapod_doe.campaign_status --quiet $(DEMO) || { \
 		echo '$(DEMO) is not finished; `make demo` goes on, `campaign_status $(DEMO)` tells how far it is'; exit 1; }
 	@$(ENTER); ros2 run hexapod_doe analyze $(DEMO) --out $(DEMO)/report
+
+study: setup  ## run what is missing of the published study, hours of it; the estimate comes first
+	@$(ENTER); python -m hexapod_doe.studies.run_study $(STUDY)
 
 test: setup  ## run the tests, without the proofs that take minutes each
 	@$(ENTER); python -m pytest -m 'not slow' $(PYTEST)
