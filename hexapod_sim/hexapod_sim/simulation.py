@@ -13,6 +13,7 @@ import numpy as np
 
 from hexapod_sim import robot
 from hexapod_sim.sensor_table import MEASURED
+from hexapod_sim.variations.fault import Fault
 from hexapod_sim.world import World
 
 _KEYFRAME = 'standing'
@@ -34,7 +35,7 @@ class Simulation:
 
     Attributes:
         world: What it is built of.
-        model: The compiled hexapod.xml on the ground of its scene.
+        model: The compiled hexapod.xml on the ground of its scene; a fault changes it in place.
         data: State of the model; sensor readings are those at the end of the last period.
         sensordata: The data's sensor readings, all in a row.
         sensor_blocks: Where the sensors of each reading lie in ``sensordata``.
@@ -47,12 +48,13 @@ class Simulation:
             world: What it is built of; article.yaml's by default.
         """
         self.world = world or World.of_article()
-        model, self._scene = self.world.build()
+        model, self._scene, self._fault = self.world.build()
+        self._period = 0
         self.sensor_blocks = _locate_blocks(model)
         self._flags_with_sensors = model.opt.disableflags
         self._steps_per_target = whole_ratio(robot.TARGET_PERIOD_NS, robot.PHYSICS_STEP_NS)
         self._bind(model, mujoco.MjData(model))
-        self._standing_qpos = self._settle()
+        self._standing_qpos, self._tilt = self._settle()
         self.reset(0.0)
 
     def _bind(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
@@ -90,10 +92,15 @@ class Simulation:
             y: Lateral position of base_link in odom [m].
             yaw: Heading [rad], counter-clockwise from odom's x axis.
         """
+        self._period = 0
+        if self._fault is not None:
+            self._fault.write(self.model, is_there=False)
         mujoco.mj_resetData(self.model, self.data)
         self._qpos[:] = self._standing_qpos
         self._qpos[1] = y
         self._qpos[3:7] = math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)
+        if self._tilt is not None:
+            mujoco.mju_mulQuat(self._qpos[3:7], self._qpos[3:7].copy(), self._tilt)
         self._ctrl[:] = robot.NEUTRAL_POSE
         mujoco.mj_forward(self.model, self.data)
 
@@ -110,6 +117,8 @@ class Simulation:
         """
         targets = np.asarray(targets, dtype=np.float64)
         _check_targets(targets)
+        if self._fault is not None:
+            self._meet(self._fault)
         # Position and velocity stages of the first step were computed by the last mj_forward.
         # Sensors are read once per period, so only the closing mj_forward evaluates them.
         model, data, ctrl = self.model, self.data, self._ctrl
@@ -124,6 +133,14 @@ class Simulation:
         self._options.disableflags = self._flags_with_sensors
         mujoco.mj_forward(model, data)
         self._check_state()
+
+    def _meet(self, fault: Fault) -> None:
+        """Count a control period, and let the fault come before its own."""
+        if self._period == fault.period:
+            fault.write(self.model, is_there=True)
+            self.data.eq_active[:] = self.model.eq_active0
+            mujoco.mj_forward(self.model, self.data)
+        self._period += 1
 
     def set_goal_line(self, y: float) -> None:
         """Move the visible goal line to y [m] of odom; it touches nothing."""
@@ -153,14 +170,21 @@ class Simulation:
         x, y, z, qw, qx, qy, qz = self._qpos[:7].tolist()
         return x, y, z, *roll_pitch_yaw(qx, qy, qz, qw)
 
-    def _settle(self) -> np.ndarray:
-        """Let the keyframe's pose sink onto the floor and return its configuration at rest."""
+    def _settle(self) -> tuple[np.ndarray, np.ndarray | None]:
+        """Let the keyframe's pose sink onto the floor.
+
+        Returns:
+            Its configuration at rest, and how it is tilted: a quaternion w x y z, None for a sound
+            robot, which is level.
+        """
         key = self.model.key(_KEYFRAME).id
         mujoco.mj_resetDataKeyframe(self.model, self.data, key)
         mujoco.mj_step(self.model, self.data, _SETTLE_PERIODS * robot.SUBSTEPS)
         rest = self._qpos.copy()
         rest[:2] = 0.0
-        return rest
+        if self._fault is not None or not self.world.robot.variations:
+            return rest, None
+        return rest, _without_yaw(rest[3:7])
 
     def _check_state(self) -> None:
         """Raise if the state diverged; the comparison is false for NaN."""
@@ -177,6 +201,15 @@ def roll_pitch_yaw(qx: float, qy: float, qz: float, qw: float) -> tuple[float, f
     pitch = math.asin(max(-1.0, min(1.0, 2 * (qw * qy - qz * qx))))
     yaw = math.atan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz))
     return roll, pitch, yaw
+
+
+def _without_yaw(wxyz: np.ndarray) -> np.ndarray:
+    """Return an orientation, as a quaternion w x y z, turned back to the heading of odom's x."""
+    w, x, y, z = wxyz.tolist()
+    _, _, yaw = roll_pitch_yaw(x, y, z, w)
+    tilt = np.empty(4)
+    mujoco.mju_mulQuat(tilt, np.array([math.cos(yaw / 2), 0.0, 0.0, -math.sin(yaw / 2)]), wxyz)
+    return tilt
 
 
 def _locate_blocks(model: mujoco.MjModel) -> dict[str, slice]:

@@ -46,11 +46,19 @@ sensors:
 
 # One row after the other on the same live nodes, so that each reset has to be clean as well.
 ROWS = {
-    'rough': '{name: rough, run_up: 0.3}',
-    'stairs': '{name: stairs, run_up: 0.3}',
-    'slope': '{name: slope, run_up: 0.3, gradient: 0.4}',
-    'slippery': '{friction: 0.4}',
-    'flat': '{}',
+    'rough': 'scene: {name: rough, run_up: 0.3}',
+    'stairs': 'scene: {name: stairs, run_up: 0.3}',
+    'slope': 'scene: {name: slope, run_up: 0.3, gradient: 0.4}',
+    'slippery': 'scene: {friction: 0.4}',
+    'payload': 'robot: {payload: 1.2, payload_x: 0.05}',
+    'dead leg': 'robot: {dead_legs: lf}',
+    'missing leg': 'robot: {missing_legs: rm}',
+    'blocked joint': 'robot: {blocked_joints: lf_knee, blocked_angle: 0.8}',
+    'weak motors': 'robot: {motor_strength: 0.7}',
+    'faults on the way': """
+robot: {payload: 0.6, dead_legs: lf, missing_legs: rm, blocked_joints: lr_hip, motor_strength: 0.9,
+        fault_time: 0.5}""",
+    'flat and sound': '',
 }
 ROW_STEPS = 70
 """In which a walk comes to lie on the ground of its scene."""
@@ -60,7 +68,7 @@ def row(name: str) -> str:
     """Return the specification of a short run."""
     return f"""
 observations: {LETTERS}
-scene: {ROWS[name]}
+{ROWS[name]}
 task: {{time_limit_steps: {ROW_STEPS}, start_offset: 0.1}}
 training: {{episodes: 1, evaluation: 1}}
 """

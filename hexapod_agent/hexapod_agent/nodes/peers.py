@@ -70,6 +70,7 @@ class Peers:
         """Give sim and pattern generator what a run's specification says of them."""
         await self.configure('sim', 'task', asdict(spec.task))
         await self.configure('sim', 'scene', asdict(spec.scene))
+        await self.configure('sim', 'robot', asdict(spec.robot))
         qualities = {'qualities': quality.to_text(spec.sensors)}
         await self.configure('sim', 'sensors', qualities)
         await self.configure('cpg', 'cpg', asdict(spec.cpg.hopf))

@@ -19,6 +19,7 @@ from hexapod_sim.quality import check as check_qualities
 from hexapod_sim.scenes.table import SceneConfig, check_walk
 from hexapod_sim.sensor_table import LETTERS, SENSORS
 from hexapod_sim.task_config import TaskConfig
+from hexapod_sim.variations.table import RobotConfig
 from hexapod_sim.world import World
 from pydantic import TypeAdapter
 
@@ -46,6 +47,7 @@ class RunSpec:
         observations: Whether the agent observes a channel, by its letter in the sensor table.
         sensors: How good a channel's device is, by its key in the sensor table.
         scene: The ground.
+        robot: How the robot varies.
         task: Reward, starts and limits.
         cpg: The pattern generator.
         learner: Algorithm and hyper-parameters.
@@ -55,6 +57,7 @@ class RunSpec:
     observations: Mapping[str, bool]
     sensors: Mapping[str, Quality]
     scene: SceneConfig
+    robot: RobotConfig
     task: TaskConfig
     cpg: CpgConfig
     learner: LearnerConfig
@@ -68,7 +71,7 @@ class RunSpec:
     @property
     def world(self) -> World:
         """What its physics is made of."""
-        return World(self.scene)
+        return World(self.scene, self.robot)
 
     @property
     def observed(self) -> ObservationSpec:

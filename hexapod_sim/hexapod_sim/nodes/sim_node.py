@@ -31,6 +31,7 @@ from hexapod_sim.robot import CONTROL_PERIOD_NS
 from hexapod_sim.scenes.table import SceneConfig
 from hexapod_sim.task import LineTask, Outcome
 from hexapod_sim.task_config import TaskConfig
+from hexapod_sim.variations.table import RobotConfig
 from hexapod_sim.viewer import Viewer
 from hexapod_sim.world import World
 
@@ -70,6 +71,7 @@ class SimNode(Node):
         declare(self, PARAMETERS)
         self._config = ConfigParameters(self, TaskConfig.of_article(), 'task')
         self._scene = ConfigParameters(self, SceneConfig.of_article(), 'scene')
+        self._robot = ConfigParameters(self, RobotConfig.of_article(), 'robot')
         self._task = LineTask(self._config.get(), self._qualities(), self._world())
         self.add_on_set_parameters_callback(self._on_set)
         value = {entry.name: self.get_parameter(entry.name).value for entry in PARAMETERS}
@@ -127,7 +129,7 @@ class SimNode(Node):
             self._viewer = Viewer(self._task.simulation, self._viewer.paced)
 
     def _world(self) -> World:
-        return World(self._scene.get())
+        return World(self._scene.get(), self._robot.get())
 
     def _qualities(self) -> dict[str, Quality]:
         return quality.from_text(self.get_parameter(_QUALITIES).value)

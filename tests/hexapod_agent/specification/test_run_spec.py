@@ -54,6 +54,7 @@ def test_sections():
         'observations',
         'sensors',
         'scene',
+        'robot',
         'task',
         'cpg',
         'learner',
@@ -79,7 +80,7 @@ def test_mapping_round_trip():
     [
         (
             'ddgp: {}',
-            "unknown key 'ddgp', expected one of observations, sensors, scene, task, cpg",
+            "unknown key 'ddgp', expected one of observations, sensors, scene, robot, task, cpg",
         ),
         (
             'learner: {ddpg: {gamma: 1}}',

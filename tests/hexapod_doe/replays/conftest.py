@@ -20,6 +20,7 @@ from hexapod_doe.bags.rosbag2 import Topic
 from hexapod_sim.scenes.table import SceneConfig
 from hexapod_sim.task import LineTask, Outcome
 from hexapod_sim.task_config import TaskConfig
+from hexapod_sim.variations.table import RobotConfig
 from hexapod_sim.world import World
 
 RANGES = ActionRanges.of_article()
@@ -83,7 +84,7 @@ def record(tmp_path: Path) -> Callable[..., tuple[Path, list[list[Outcome]]]]:
         from rclpy.serialization import serialize_message
 
         spec = {'task': vars(config), 'sensors': dict(sensors), 'scene': dict(scene or {})}
-        world = World(SceneConfig.of_article(**spec['scene']))
+        world = World(SceneConfig.of_article(**spec['scene']), RobotConfig.of_article())
         told = {'run_id': 'walk', 'config': yaml.safe_dump(spec)}
         stamp = 0
         with BagWriter(tmp_path / 'walk', told) as writer:

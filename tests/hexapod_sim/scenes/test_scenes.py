@@ -18,6 +18,7 @@ from hexapod_sim.sensors import read
 from hexapod_sim.simulation import Simulation
 from hexapod_sim.task import LineTask
 from hexapod_sim.task_config import TaskConfig
+from hexapod_sim.variations.table import RobotConfig
 from hexapod_sim.world import World
 
 from hexapod_sim import robot
@@ -28,7 +29,7 @@ FLAT_DEPTH = 2.0e-4
 
 
 def world(**changes) -> World:
-    return World(SceneConfig.of_article(**changes))
+    return World(SceneConfig.of_article(**changes), RobotConfig.of_article())
 
 
 @pytest.fixture(scope='module', params=SCENES)
