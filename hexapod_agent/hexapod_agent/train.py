@@ -182,6 +182,11 @@ def _parser() -> CommandLine:
 
 def _trainer(options: argparse.Namespace) -> Trainer:
     """A new run, or the one that the directory holds."""
+    for setting in options.set if options.observations is not None else ():
+        if setting.partition('=')[0].partition('.')[0] == 'observations':
+            raise ConfigError(
+                f'--observations {options.observations} and --set {setting}: expected one of them'
+            )
     file = options.out / CHECKPOINT
     if options.resume:
         trainer = checkpoint.load(file)

@@ -104,7 +104,7 @@ def _confirmation_runs(
 ) -> dict[str, list[float]]:
     """Return the responses of the confirmation runs by label, those below a campaign too."""
     response = args.response or tables[0].response
-    like = tables[0].settings
+    factors, like = tables[0].factors, tables[0].settings
     if not args.confirm:
         return confirmation_runs(args.bags, response, like) if args.bags else {}
     runs: dict[str, list[float]] = {}
@@ -117,6 +117,8 @@ def _confirmation_runs(
         if not found:
             raise TableError(f'{path}: no bag of a complete run, expected confirmation runs')
         for label, values in found.items():
+            if set(label) <= set(factors):  # a file's columns may stand in another order
+                label = ''.join(factor for factor in factors if factor in label)
             runs.setdefault(label, []).extend(values)
     return runs
 

@@ -120,6 +120,10 @@ def test_a_run_that_ends_amid_its_evaluation_gives_the_same(config_file, tmp_pat
     ('arguments', 'message'),
     [
         (('--observations', 'ABX'), "unknown letter 'X'"),
+        (
+            ('--observations', 'D', '--set', 'observations=AB'),
+            '--observations D and --set observations=AB: expected one of them',
+        ),
         (('--config', 'no.yaml'), "'no.yaml' not found"),
         (('--resume',), 'checkpoint.*not found'),
         (('--episodes', 0), "--episodes: '0', expected a whole number from 1"),

@@ -64,7 +64,6 @@ class Playback:
         rate: float = 1.0,
         loop: bool = False,
         paused: bool = False,
-        begin_ns: int | None = None,
     ) -> None:
         """Begin before the first frame.
 
@@ -73,7 +72,6 @@ class Playback:
             rate: recorded seconds per second; 0 for as fast as possible.
             loop: begin again at the end.
             paused: hold until `resume` or `step`.
-            begin_ns: recorded time to begin at; None for that of the first frame.
         """
         self.paused = paused
         self.jump: Jump | None = None
@@ -84,8 +82,6 @@ class Playback:
         self._next = next(self._frames, None)
         # The recorded time that was, or will be, due at a time of the clock.
         self._recorded_ns = self._next.time_ns if self._next else 0
-        if begin_ns is not None and 0 <= self._recorded_ns - begin_ns <= MOST_PAUSE_NS:
-            self._recorded_ns = begin_ns
         self._anchor_ns: int | None = None
 
     @property
@@ -97,13 +93,6 @@ class Playback:
     def next_ns(self) -> int | None:
         """Recorded time of the next frame; None after the last one."""
         return self._next.time_ns if self._next else None
-
-    def recorded_ns(self, now_ns: int) -> int:
-        """Return the recorded time that is due now, and not before the next frame is taken."""
-        if self._anchor_ns is None or not self._rate:
-            return self._recorded_ns
-        passed = self._recorded_ns + round((now_ns - self._anchor_ns) * self._rate)
-        return passed if self._next is None else min(passed, self._next.time_ns)
 
     def wait_ns(self, now_ns: int) -> int | None:
         """Return in how many nanoseconds the next frame is due; 0 if it is, None if never."""
@@ -178,17 +167,15 @@ def frames(messages: Iterable[RawMessage]) -> Iterator[Frame]:
 class PauseTeller:
     """Tells each long pause, and each jump of recorded time, once."""
 
-    def __init__(self, playback: Playback, start_ns: int, option: str) -> None:
+    def __init__(self, playback: Playback, start_ns: int) -> None:
         """Watch a playback.
 
         Args:
             playback: which.
-            start_ns: recorded time from which the option below counts.
-            option: what begins a playback after a pause, with a place for the seconds.
+            start_ns: recorded time from which the parameter `start` counts.
         """
         self._playback = playback
         self._start_ns = start_ns
-        self._option = option
         self._told_ns: int | None = None
 
     def notice(self, wait_ns: int | None) -> str:
@@ -200,7 +187,7 @@ class PauseTeller:
         next_ns, jump = self._playback.next_ns, self._playback.jump
         if next_ns is None or next_ns == self._told_ns:
             return ''
-        option = self._option.format((next_ns - self._start_ns) * 1e-9)
+        option = f'start:={(next_ns - self._start_ns) * 1e-9:.3f}'
         if jump:
             text = f'{jump}: passed over; {option} begins after it'
         elif wait_ns is not None and wait_ns > _LONG_NS:

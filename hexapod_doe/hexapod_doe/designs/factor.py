@@ -13,6 +13,7 @@ from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_agent.specification.spec_text import ConfigError, parsed, quoted
 from hexapod_sim.sensor_table import CHANNELS, SENSORS
 
+from hexapod_doe.designs.terms import letters_on
 from hexapod_doe.errors import BagError
 
 FACTORS = 'factors'
@@ -142,15 +143,13 @@ class Treatments:
         return self.factors == default_factors(self.letters)
 
     def label(self, levels: Sequence[float]) -> str:
-        """Return the short name of a case: its sensors, or its factors at the high level."""
-        pairs = zip(self.letters, levels, strict=True)
-        letters = ''.join(letter for letter, level in pairs if level > 0)
-        return (self.observations(levels) if self.only_sensors else letters) or 'none'
+        """Return the short name of a case: its factors at the high level, as they stand."""
+        return letters_on(levels, self.letters) or 'none'
 
     def text(self, levels: Sequence[float]) -> str:
         """Return a case in words, such as 'sensors CD' or 'yaw share 1, body height off'."""
         if self.only_sensors:
-            return f'sensors {self.label(levels)}'
+            return f'sensors {self.observations(levels) or "none"}'
         pairs = zip(self.factors, levels, strict=True)
         return ', '.join(factor.text(level) for factor, level in pairs)
 

@@ -96,7 +96,7 @@ class PlayerNode(Node):
         if self._playback.finished:
             raise BagError(self._nothing())
         self._played = 0
-        self._pauses = PauseTeller(self._playback, self._bag.start_ns, 'start:={:.3f}')
+        self._pauses = PauseTeller(self._playback, self._bag.start_ns)
         self._now_ns = self._bag.start_ns
         self.create_service(Trigger, '~/pause', self._on_pause)
         self.create_service(Trigger, '~/resume', self._on_resume)

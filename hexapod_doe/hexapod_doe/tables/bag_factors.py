@@ -31,7 +31,7 @@ def factors_of(group: Group, chosen: Sequence[str] | None) -> tuple[Factor, ...]
     found = factors_in(group.runs[0].metadata)
     if found is None:
         found = default_factors(plan.factors if plan is not None else LETTERS)
-    own = {factor.letter: factor for factor in sorted(found, key=lambda each: each.letter)}
+    own = {factor.letter: factor for factor in found}
     for letter in chosen or ():
         if letter not in own:
             raise TableError(

@@ -137,16 +137,3 @@ def test_a_pause_of_a_day_is_kept():
     player.take()
     assert player.jump is None
     assert (player.wait_ns(0), player.next_ns) == (DAY, DAY)
-
-
-def test_recorded_time_goes_on_between_frames_and_waits_for_none():
-    player = playback(rate=2.0)
-    assert player.recorded_ns(5) == 100
-    player.wait_ns(1_000)
-    player.take()
-    assert [player.recorded_ns(1_000 + passed) for passed in (0, 10, 20, 90)] == [
-        100,
-        120,
-        140,
-        140,
-    ]

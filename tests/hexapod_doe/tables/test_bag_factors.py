@@ -46,9 +46,13 @@ def test_levels_come_from_the_bags_alone(campaign: Path, tmp_path: Path) -> None
     (planned,) = read_bags([campaign])
     shutil.copytree(campaign / 'runs', tmp_path / 'elsewhere')
     (alone,) = read_bags([tmp_path / 'elsewhere'])
-    assert planned.factors == alone.factors == ('A', 'B', 'C', 'D')
+    assert planned.factors == alone.factors == ('C', 'A', 'B', 'D')
     assert planned.factor_names['A'] == 'yaw share'
     assert planned.named == alone.named
+    labels = {
+        row.run_id: row.label.replace('none', '(none)') for row in read_rows(campaign / 'plan.csv')
+    }
+    assert dict(zip(alone.rows['run_id'], alone.rows['label'], strict=True)) == labels
     columns = ['run_id', *alone.factors, 'response']
     ordered = [t.rows[columns].sort_values('run_id', ignore_index=True) for t in (planned, alone)]
     assert ordered[0].equals(ordered[1])
@@ -57,7 +61,7 @@ def test_levels_come_from_the_bags_alone(campaign: Path, tmp_path: Path) -> None
 def test_the_report_names_factors_and_levels(campaign: Path) -> None:
     analysis = analyse(read_bags([campaign]), Options())
     printed = analyze.summary(analysis)
-    assert re.search(r'choice: .*yaw share 0.*body orientation o(n|ff)', printed)
+    assert re.search(r'choice: .*body orientation o(n|ff).*yaw share 0', printed)
     assert 'yaw share: part of the task' in printed
     drawn = sections(analysis)
     charts = [i for section in drawn for i in section.items if isinstance(i, Chart)]
