@@ -16,6 +16,8 @@ from hexapod_agent.environment.env import HexapodLine
 
 _PERIOD_S = CONTROL_PERIOD_NS * 1e-9
 _LAST_STEPS = 200  # 5 s, in which the offset is judged
+_LATE_STEPS = 320  # 8 s, in which a varied robot has to walk again
+_RECOVERED_SHARE = 0.5  # of the undamaged robot's speed there
 
 
 class GraphError(RuntimeError):
@@ -32,6 +34,7 @@ class Episode:
         distance: Way made good along the line, m.
         energy: Integral of |torque x velocity| over all joints, J.
         fell: Whether it ended by a failure.
+        late_speed: Way along the line over time, of the last 8 s or all of a shorter one, m/s.
     """
 
     episode_return: float
@@ -39,6 +42,7 @@ class Episode:
     distance: float
     energy: float
     fell: bool
+    late_speed: float
 
 
 @dataclass(frozen=True)
@@ -54,6 +58,9 @@ class Evaluation:
         speed: Way along the line over time, m/s.
         falls: Episodes that ended by a failure.
         energy_per_metre: Mechanical energy over way along the line, J/m; NaN without way.
+        late_speed: Mean of the episodes' late speeds, m/s.
+        recovered: Episodes of a varied robot that did not fail and had half the late speed that
+            the same agent has with the robot as it was built; None of a robot that is.
     """
 
     starts: int
@@ -64,6 +71,8 @@ class Evaluation:
     speed: float
     falls: int
     energy_per_metre: float
+    late_speed: float
+    recovered: int | None = None
 
 
 class EpisodeMeter:
@@ -71,7 +80,7 @@ class EpisodeMeter:
 
     def __init__(self, x: float) -> None:
         """Begin at the start of an episode, where the robot stands at x [m] of odom."""
-        self._start = self._x = x
+        self._xs = [x]
         self._return = 0.0
         self._power = 0.0
         self._offsets: list[float] = []
@@ -93,15 +102,17 @@ class EpisodeMeter:
             torques: Joint torques (18,), N m.
             velocities: Joint velocities (18,), rad/s.
         """
-        self._x = x
+        self._xs.append(x)
         self._return += reward
         self._offsets.append(offset)
         self._power += float(np.abs(torques * velocities).sum())
 
     def episode(self, fell: bool) -> Episode:
         """Close the episode."""
-        way, energy = self._x - self._start, self._power * _PERIOD_S
-        return Episode(self._return, np.array(self._offsets), way, energy, fell)
+        way, energy = self._xs[-1] - self._xs[0], self._power * _PERIOD_S
+        late = self._xs[-1 - _LATE_STEPS :]
+        late_speed = (late[-1] - late[0]) / (max(len(late) - 1, 1) * _PERIOD_S)
+        return Episode(self._return, np.array(self._offsets), way, energy, fell, late_speed)
 
 
 def run_episode(env: HexapodLine, policy: Policy, seed: int, episode: int) -> Episode:
@@ -117,8 +128,26 @@ def run_episode(env: HexapodLine, policy: Policy, seed: int, episode: int) -> Ep
     return meter.episode(env.outcome.terminated)
 
 
-def summarize(episodes: list[Episode]) -> Evaluation:
-    """Reduce episodes to figures."""
+def has_recovered(fell: bool, late_speed: float, undamaged_speed: float) -> bool:
+    """Return whether a varied robot walks again.
+
+    Args:
+        fell: Whether its episode ended by a failure.
+        late_speed: Its speed in the last 8 s, m/s.
+        undamaged_speed: Mean of the same, of the same agent with the robot as it was built and
+            from the same starts, m/s.
+    """
+    return not fell and late_speed >= _RECOVERED_SHARE * undamaged_speed
+
+
+def summarize(episodes: list[Episode], undamaged_speed: float | None = None) -> Evaluation:
+    """Reduce episodes to figures.
+
+    Args:
+        episodes: From all starts.
+        undamaged_speed: Mean late speed of the robot as it was built, m/s, if they are of a
+            varied one.
+    """
     returns = [episode.episode_return for episode in episodes]
     offsets = np.abs(np.concatenate([episode.offsets[-_LAST_STEPS:] for episode in episodes]))
     distance = ordered_sum(episode.distance for episode in episodes)
@@ -133,4 +162,8 @@ def summarize(episodes: list[Episode]) -> Evaluation:
         speed=distance / time,
         falls=sum(episode.fell for episode in episodes),
         energy_per_metre=energy / distance if distance > 0.0 else float('nan'),
+        late_speed=ordered_sum(episode.late_speed for episode in episodes) / len(episodes),
+        recovered=None
+        if undamaged_speed is None
+        else sum(has_recovered(e.fell, e.late_speed, undamaged_speed) for e in episodes),
     )

@@ -6,11 +6,12 @@
 import os
 import time
 from collections import defaultdict, deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+import yaml
 from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import StepOutcome
@@ -33,6 +34,7 @@ from hexapod_agent.environment.evaluation import Episode, EpisodeMeter, GraphErr
 from hexapod_agent.nodes.action_names import PLAY_RUN
 from hexapod_agent.nodes.agent_node import AgentNode
 from hexapod_agent.nodes.messages import decode, outcome_from_message
+from hexapod_agent.specification.spec_text import merged
 
 _MEASURED = ('joint_velocities', 'joint_torques', 'line_offset')
 _CHANNELS = tuple(c for c in CHANNELS if not set(_MEASURED).isdisjoint(c.readings))
@@ -105,8 +107,16 @@ class EvaluationNode(Node):
             self.episodes.append(self._meter.episode(outcome.terminated))
 
 
-def episodes_on_graph(checkpoint: Path, starts: int, seed: int) -> Iterator[Episode]:
+def episodes_on_graph(
+    checkpoint: Path, starts: int, seed: int, changes: Mapping[str, Any]
+) -> Iterator[Episode]:
     """Start sim, cpg and agent in a namespace of their own, and yield the episodes they play.
+
+    Args:
+        checkpoint: What is played.
+        starts: How many episodes.
+        seed: Of their starts.
+        changes: Of the checkpoint's specification, as nested values.
 
     Raises:
         GraphError: the run ended early, or an episode did not arrive whole.
@@ -114,7 +124,7 @@ def episodes_on_graph(checkpoint: Path, starts: int, seed: int) -> Iterator[Epis
     goal = TrainRun.Goal(
         run_id='evaluation',
         checkpoint=str(checkpoint.resolve()),
-        spec=f'training: {{episodes: {starts}}}',
+        spec=yaml.safe_dump(merged(changes, {'training': {'episodes': starts}})),
         seed=seed,
     )
     namespace, files = f'/evaluate_{os.getpid()}', root_arguments('', checkpoint.resolve())
