@@ -25,8 +25,7 @@ from hexapod_doe.choosing.ranks import groups
 from hexapod_doe.errors import AnalysisError, BagError, TableError
 from hexapod_doe.records.options import Options
 from hexapod_doe.reporting.figures.chart import Chart
-from hexapod_doe.reporting.figures.parts import is_wide
-from hexapod_doe.reporting.figures.style import INK, MARKERS, SERIES
+from hexapod_doe.reporting.figures.style import INK, MARKERS, SERIES, WIDE
 from hexapod_doe.reporting.formats import number, percent
 from hexapod_doe.studies.winners import Winners
 from hexapod_doe.tables.bag_table import read_bags
@@ -182,11 +181,9 @@ def chart(found: pd.DataFrame, rule: str) -> Chart:
     """Return the figure: regret and shares against the number of runs, a line for each kind."""
     kinds = [(design, procedure) for design in DESIGNS for procedure in PROCEDURES]
 
-    def draw(width: float) -> Figure:
-        wide = is_wide(width)
-        shape = (1, len(_MEASURES)) if wide else (len(_MEASURES), 1)
-        figure = Figure(figsize=(width, 2.9 if wide else 6.6), layout='constrained')
-        panels = figure.subplots(*shape, sharex=True).ravel()
+    def draw() -> Figure:
+        figure = Figure(figsize=(WIDE, 2.9), layout='constrained')
+        panels = figure.subplots(1, len(_MEASURES), sharex=True)
         for axes, (measure, title) in zip(panels, _MEASURES.items(), strict=True):
             for index, (design, procedure) in enumerate(kinds):
                 rows = found[(found['design'] == design) & (found['procedure'] == procedure)]

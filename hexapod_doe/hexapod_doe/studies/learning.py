@@ -25,7 +25,7 @@ from matplotlib.axes import Axes
 
 from hexapod_doe.reporting.figures.learning import outliers
 from hexapod_doe.reporting.figures.parts import grid
-from hexapod_doe.reporting.figures.style import BLUE, INK, MUTED, ORANGE, RC, WIDE
+from hexapod_doe.reporting.figures.style import BLUE, INK, MUTED, ORANGE, RC
 
 FIGURES = 'evaluation.json'
 BASELINES = ('zero', 'constant')
@@ -170,7 +170,7 @@ def draw(curves: pd.DataFrame, constant: float, path: Path) -> None:
     """
     sets = list(curves['observations'].unique())
     with mpl.rc_context(RC):
-        figure, panels = grid(WIDE, len(sets), len(sets), 2.2)
+        figure, panels = grid(len(sets), len(sets), 2.2)
         for axes, name in zip(panels, sets, strict=True):
             _draw_set(axes, curves[curves['observations'] == name])
             axes.axhline(constant, color=ORANGE, linestyle='--', linewidth=1.0)

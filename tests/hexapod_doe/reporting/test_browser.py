@@ -121,7 +121,7 @@ def test_the_report_is_drawn(request, browser, report, width, theme):
     page = request.getfixturevalue(report)
     found = browser.open(page, width, theme)
     assert found['figures'] >= 10
-    assert len(found['sizes']) == found['figures']  # one of the two drawings of each figure
+    assert len(found['sizes']) == found['figures']
     assert all(w > 250 and h > 100 for w, h in found['sizes'])
     assert all(marks > 5 for marks in found['marks'])
     assert found['smallest'] >= 9  # px, the height of the smallest text

@@ -18,13 +18,13 @@ from hexapod_doe.reporting.figures import (
     significance,
 )
 from hexapod_doe.reporting.figures.chart import Chart
-from hexapod_doe.reporting.figures.style import NARROW, RC, ROLES, WIDE
+from hexapod_doe.reporting.figures.style import RC, ROLES
 from hexapod_doe.reporting.standing import standings
 
 
-def _axes(chart: Chart, width: float = WIDE):
+def _axes(chart: Chart):
     with mpl.rc_context(RC):
-        return chart.draw(width).axes
+        return chart.draw().axes
 
 
 def test_main_effects_are_means_with_and_without(campaign):
@@ -141,7 +141,7 @@ def test_many_sets_are_drawn_as_a_band_and_many_cases_without_names(tour, monkey
 
 def test_learning_curves_have_a_panel_per_case(campaign, tour):
     chart = learning.learning_curves(campaign)
-    assert len(_axes(chart)) == len(_axes(chart, NARROW)) == 16
+    assert len(_axes(chart)) == 16
     assert chart.data.groupby('run_id').size().max() <= learning.POINTS
     ends = chart.data.groupby('run_id')['episode'].agg(['min', 'max'])
     assert (ends['min'] == 0).all()
@@ -157,7 +157,7 @@ def test_the_cost_front_names_the_purchase(campaign):
 
 
 def test_a_drawing_keeps_no_colour_of_its_own(campaign):
-    svg = effects.main_effects(campaign).wide_svg
+    svg = effects.main_effects(campaign).svg
     assert svg.startswith('<svg')
     assert not any(light in svg for light, _ in ROLES.values())
     assert ' width="' not in svg[: svg.index('>')]

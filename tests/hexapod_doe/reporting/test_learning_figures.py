@@ -11,7 +11,6 @@ import pytest
 from hexapod_doe.reporting.figures import learning
 from hexapod_doe.reporting.figures.learning import outliers
 from hexapod_doe.reporting.figures.reward_terms import POINTS, reward_terms
-from hexapod_doe.reporting.figures.style import WIDE
 from hexapod_doe.reporting.glossary import glossary, meanings
 from hexapod_interfaces.msg import EpisodeResult
 from hexapod_sim.task import TERM_NAMES
@@ -38,14 +37,14 @@ def test_a_run_far_from_its_case_is_named(campaign):
     curves = campaign.curves.copy()
     end = (curves['episode'] == last) & (curves['case'] == case)
     curves.loc[end, 'average'] = np.where(curves.loc[end, 'replicate'] == 2, -1e4, 400.0)
-    figure = learning.learning_curves(replace(campaign, curves=curves)).draw(WIDE)
+    figure = learning.learning_curves(replace(campaign, curves=curves)).draw()
     panel = next(a for a in figure.axes if a.get_title(loc='left').split()[0] == str(case))
     assert [text.get_text() for text in panel.texts] == ['replicate 2']
 
 
 def test_each_term_has_its_panel(with_terms):
     chart = reward_terms(with_terms)
-    assert [a.get_title(loc='left') for a in chart.draw(WIDE).axes] == ['alive', 'closeness']
+    assert [a.get_title(loc='left') for a in chart.draw().axes] == ['alive', 'closeness']
     assert chart.data.groupby('case').size().max() <= POINTS
     assert set(chart.data['term_alive']) == {600.0}
     assert chart.title.startswith('Learning changes closeness most: by +')

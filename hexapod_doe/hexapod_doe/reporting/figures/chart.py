@@ -14,7 +14,7 @@ import matplotlib as mpl
 import pandas as pd
 from matplotlib.figure import Figure
 
-from hexapod_doe.reporting.figures.style import NARROW, RC, ROLES, WIDE
+from hexapod_doe.reporting.figures.style import RC, ROLES
 from hexapod_doe.sheets.write import write_csv
 
 _VARIABLES = {values[0]: f'var(--{role})' for role, values in ROLES.items()}
@@ -34,36 +34,26 @@ class Chart:
     """How to read it."""
     data: pd.DataFrame
     """The numbers that are drawn."""
-    draw: Callable[[float], Figure]
-    """Draws it at a width in inches."""
+    draw: Callable[[], Figure]
     half: bool = False
     """Whether it takes half the width of a page, beside another one."""
-
-    @property
-    def wide_svg(self) -> str:
-        """The figure for a desk."""
-        return self._svg(NARROW if self.half else WIDE)
-
-    @property
-    def narrow_svg(self) -> str:
-        """The figure for a phone; empty where the wide one is narrow already."""
-        return '' if self.half else self._svg(NARROW)
 
     def save(self, figures: Path, tables: Path) -> None:
         """Write the PNG, with the title in it, and the CSV."""
         with mpl.rc_context(RC):
-            figure = self.draw(NARROW if self.half else WIDE)
+            figure = self.draw()
             figure.suptitle(self.title, x=0.01, ha='left', fontsize=9.5, wrap=True)
             figure.savefig(figures / f'{self.name}.png', dpi=_PNG_DPI)
         write_csv(self.data, tables / f'{self.name}.csv')
 
-    def _svg(self, width: float) -> str:
+    @property
+    def svg(self) -> str:
+        """The figure as it stands in the page."""
         # The salt keeps the ids of clip paths apart among the figures of one page.
-        salt: dict[Any, Any] = {'svg.hashsalt': f'{self.name}-{width}'}
+        salt: dict[Any, Any] = {'svg.hashsalt': self.name}
         buffer = io.StringIO()
         with mpl.rc_context({**RC, **salt}):
-            figure = self.draw(width)
-            figure.savefig(
+            self.draw().savefig(
                 buffer, format='svg', metadata={'Date': None, 'Creator': None}, transparent=True
             )
         return _embed(buffer.getvalue())

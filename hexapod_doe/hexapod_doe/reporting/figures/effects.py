@@ -18,7 +18,6 @@ from hexapod_doe.reporting.figures.parts import (
     designs,
     factor_label,
     grid,
-    is_wide,
     unit_label,
 )
 from hexapod_doe.reporting.figures.significance import sizes
@@ -41,15 +40,14 @@ def main_effects(analysis: Analysis) -> Chart:
         for effect in other.main_effects
     ]
 
-    def draw(width: float) -> Figure:
-        wide = is_wide(width)
-        figure, axes = canvas(width, 3.9 if wide else 3.3)
+    def draw() -> Figure:
+        figure, axes = canvas(3.9)
         several = designs(analysis)
         for index, other in enumerate(several):
             shift = 0.1 * (index - (len(several) - 1) / 2)
             _draw_design(axes, other, factors, index, shift)
         axes.axhline(_mean(analysis), color=MUTED, linewidth=0.7, linestyle=(0, (2, 3)))
-        names = [factor_label(analysis.design, f, 11) if wide else f for f in factors]
+        names = [factor_label(analysis.design, f, 11) for f in factors]
         axes.set_xticks(range(len(factors)), names)
         axes.tick_params(axis='x', labelcolor=INK)
         axes.set_ylabel(unit_label(analysis))
@@ -76,9 +74,8 @@ def interactions(analysis: Analysis) -> Chart | None:
     data = pd.concat([_corners(analysis, term) for term in terms], ignore_index=True)
     aliases = analysis.design.aliases
 
-    def draw(width: float) -> Figure:
-        columns = 3 if is_wide(width) else 2
-        figure, panels = grid(width, len(terms), columns, 1.4, below=0.55, foot=0.3)
+    def draw() -> Figure:
+        figure, panels = grid(len(terms), 3, 1.4, below=0.55, foot=0.3)
         for axes, term in zip(panels, terms, strict=True):
             _draw_interaction(axes, data[data['term'] == term], term, analysis.design)
             axes.set_title(short_alias(aliases.get(term, term)), loc='left')

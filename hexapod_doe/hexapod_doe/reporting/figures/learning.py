@@ -13,7 +13,7 @@ from matplotlib.ticker import MaxNLocator
 
 from hexapod_doe.records.results import Analysis
 from hexapod_doe.reporting.figures.chart import Chart
-from hexapod_doe.reporting.figures.parts import canvas, failed, grid, is_wide, unit_label
+from hexapod_doe.reporting.figures.parts import canvas, failed, grid, unit_label
 from hexapod_doe.reporting.figures.style import BLUE, INK, MUTED, ORANGE, SURFACE
 from hexapod_doe.reporting.formats import count, number
 from hexapod_doe.reporting.words import words
@@ -25,6 +25,7 @@ MAX_NAMES = 64
 POINTS = 40
 """A curve is drawn through at most so many episodes; the bags hold them all."""
 _FENCE = 1.5
+_COLUMNS = 4
 
 
 def runs_by_case(analysis: Analysis) -> Chart:
@@ -34,16 +35,15 @@ def runs_by_case(analysis: Analysis) -> Chart:
     order = list(means.index)
     repeated = len(table) > len(order)
 
-    def draw(width: float) -> Figure:
-        wide = is_wide(width)
+    def draw() -> Figure:
         named = len(order) <= MAX_NAMES
-        figure, axes = canvas(width, 0.7 + (0.17 if named else 0.05) * len(order))
+        figure, axes = canvas(0.7 + (0.17 if named else 0.05) * len(order))
         rows = table['label'].map({label: row for row, label in enumerate(order)})
         _dots(axes, table['response'], rows, table['kept'], table['failed'])
         if repeated:
             axes.plot(means, range(len(order)), '|', color=INK, markersize=9, markeredgewidth=1.6)
         axes.set_yticks(range(len(order)) if named else [], order if named else [])
-        axes.tick_params(axis='y', labelcolor=INK, labelsize=8.5 if wide else 7.5)
+        axes.tick_params(axis='y', labelcolor=INK, labelsize=8.5)
         axes.set_ylim(len(order) - 0.4, -0.6)
         axes.grid(visible=False, axis='y')
         axes.grid(visible=True, axis='x')
@@ -71,13 +71,12 @@ def learning_curves(analysis: Analysis) -> Chart | None:
     data = _thinned(curves[curves['case'].isin(best)])
     cases = data.drop_duplicates('case').sort_values('case')[['case', 'label']]
 
-    def draw(width: float) -> Figure:
-        columns = 4 if is_wide(width) else 2
-        figure, panels = grid(width, len(cases), columns, 0.72)
+    def draw() -> Figure:
+        figure, panels = grid(len(cases), _COLUMNS, 0.72)
         for axes, (case, label) in zip(panels, cases.itertuples(index=False), strict=True):
             _draw_case(axes, data[data['case'] == case])
             axes.set_title(f'{case}  {label}', loc='left', fontsize=8.5, pad=3)
-            axes.tick_params(labelbottom=axes in panels[-columns:])
+            axes.tick_params(labelbottom=axes in panels[-_COLUMNS:])
         figure.supxlabel('episode', y=0.01, fontsize=9, color=MUTED)
         figure.supylabel('moving average of the return', x=0.01, fontsize=9, color=MUTED)
         return figure

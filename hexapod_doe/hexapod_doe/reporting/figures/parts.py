@@ -15,14 +15,13 @@ from hexapod_doe.reporting.figures.style import WIDE
 from hexapod_doe.reporting.words import factor_text
 
 
-def canvas(width: float, height: float) -> tuple[Figure, Axes]:
+def canvas(height: float, width: float = WIDE) -> tuple[Figure, Axes]:
     """Return a figure of a size in inches with one set of axes."""
     figure = Figure(figsize=(width, height), layout='constrained')
     return figure, figure.add_subplot()
 
 
 def grid(
-    width: float,
     panels: int,
     columns: int,
     height: float,
@@ -36,7 +35,6 @@ def grid(
     Lengths are in inches. Margins are fixed: to measure dozens of panels takes seconds.
 
     Args:
-        width: Width of the figure.
         panels: How many panels there are.
         columns: How many stand side by side.
         height: Height of a panel's axes.
@@ -47,12 +45,12 @@ def grid(
     rows = -(-panels // columns)
     left, right, top, bottom = 0.62, 0.08, 0.3, foot
     total = top + bottom + rows * height + (rows - 1) * below
-    figure = Figure(figsize=(width, total))
+    figure = Figure(figsize=(WIDE, total))
     axes = np.ravel(figure.subplots(rows, columns, sharey=True, squeeze=False))
-    each = (width - left - right - (columns - 1) * gap) / columns
+    each = (WIDE - left - right - (columns - 1) * gap) / columns
     figure.subplots_adjust(
-        left=left / width,
-        right=1 - right / width,
+        left=left / WIDE,
+        right=1 - right / WIDE,
         top=1 - top / total,
         bottom=bottom / total,
         wspace=gap / each,
@@ -61,11 +59,6 @@ def grid(
     for spare in axes[panels:]:
         spare.remove()
     return figure, list(axes[:panels])
-
-
-def is_wide(width: float) -> bool:
-    """Tell whether there is room for words beside letters."""
-    return width > 0.75 * WIDE
 
 
 def designs(analysis: Analysis) -> list[Analysis]:

@@ -12,14 +12,24 @@ from matplotlib.figure import Figure
 
 from hexapod_doe.records.results import Analysis
 from hexapod_doe.reporting.figures.chart import Chart
-from hexapod_doe.reporting.figures.parts import canvas, design_label, designs, is_wide, unit_label
-from hexapod_doe.reporting.figures.style import BLUE, GRID, INK, MARKERS, MUTED, SERIES, SURFACE
+from hexapod_doe.reporting.figures.parts import canvas, design_label, designs, unit_label
+from hexapod_doe.reporting.figures.style import (
+    BLUE,
+    GRID,
+    INK,
+    MARKERS,
+    MUTED,
+    SERIES,
+    SURFACE,
+    WIDE,
+)
 from hexapod_doe.reporting.formats import count, number
 from hexapod_doe.reporting.standing import Standing, all_alike, deciding_parts, standings
 from hexapod_doe.reporting.words import Words, words
 
 TOP = 15
 """Sets shown one by one."""
+_NAMED = 5
 MAX_BARS = 256
 """More intervals than this are drawn as one band."""
 
@@ -30,14 +40,13 @@ def top_sets(analysis: Analysis) -> Chart:
     shown = _with_references(ranked)
     factors, named = analysis.design.factors, words(analysis.design)
 
-    def draw(width: float) -> Figure:
-        wide = is_wide(width)
-        figure = Figure(figsize=(width, 0.75 + 0.2 * len(shown)), layout='constrained')
-        share = [0.22 * len(factors), width - 0.22 * len(factors)]
+    def draw() -> Figure:
+        figure = Figure(figsize=(WIDE, 0.75 + 0.2 * len(shown)), layout='constrained')
+        share = [0.22 * len(factors), WIDE - 0.22 * len(factors)]
         matrix, axes = figure.subplots(1, 2, sharey=True, width_ratios=share)
         _draw_matrix(matrix, shown, factors)
         _draw_intervals(axes, shown)
-        matrix.set_yticks(range(len(shown)), [_row_name(p, wide, named) for p in shown])
+        matrix.set_yticks(range(len(shown)), [_row_name(p, named) for p in shown])
         axes.set_xlabel(f'predicted {unit_label(analysis)}')
         return figure
 
@@ -65,11 +74,11 @@ def ranked_predictions(analysis: Analysis) -> Chart:
     level = f'{100 * analysis.level:g} %'
     frames = [_frame(other, standings(other)) for other in designs(analysis)]
 
-    def draw(width: float) -> Figure:
-        figure, axes = canvas(width, 3.8 if is_wide(width) else 3.2)
+    def draw() -> Figure:
+        figure, axes = canvas(3.8)
         for index, other in enumerate(designs(analysis)):
             _draw_ranked(axes, standings(other), index, design_label(other.design))
-        _name_points(axes, standings(analysis), 5 if is_wide(width) else 2)
+        _name_points(axes, standings(analysis))
         axes.set_xlabel('rank')
         axes.set_ylabel(f'predicted {unit_label(analysis)}')
         axes.set_xlim(0, len(analysis.predictions) + 1)
@@ -106,8 +115,8 @@ def agreement(analysis: Analysis) -> Chart | None:
     )
     correlation = float(data['x'].corr(data['y'], method='spearman'))
 
-    def draw(width: float) -> Figure:
-        figure, axes = canvas(width, 3.8 if is_wide(width) else 3.2)
+    def draw() -> Figure:
+        figure, axes = canvas(3.8)
         ends = [data[['x', 'y']].min().min(), data[['x', 'y']].max().max()]
         axes.plot(ends, ends, color=MUTED, linewidth=0.8)
         for index, (_, part) in enumerate(data.groupby('design', sort=False), start=1):
@@ -168,9 +177,7 @@ def _draw_intervals(axes: Axes, shown: Sequence[Standing]) -> None:
     axes.spines['left'].set_visible(False)
 
 
-def _row_name(standing: Standing, wide: bool, named: Words) -> str:
-    if not wide:
-        return f'{standing.rank}'
+def _row_name(standing: Standing, named: Words) -> str:
     whole = standing.size == len(standing.levels)
     name = named.whole if whole else standing.label if standing.size else named.empty
     return f'{name}  {standing.rank}'
@@ -192,9 +199,9 @@ def _draw_ranked(axes: Axes, ranked: Sequence[Standing], index: int, label: str)
     axes.plot([], [], marker, color=colour, markersize=4, label=label)
 
 
-def _name_points(axes: Axes, ranked: Sequence[Standing], best: int) -> None:
+def _name_points(axes: Axes, ranked: Sequence[Standing]) -> None:
     top = ranked[0].ci[1] or ranked[0].value
-    names = '  '.join(p.label for p in ranked[:best])
+    names = '  '.join(p.label for p in ranked[:_NAMED])
     axes.annotate(f'best: {names}', (1, top), (0, 5), textcoords='offset points')
 
 

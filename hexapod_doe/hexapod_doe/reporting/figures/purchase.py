@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from hexapod_doe.records.findings import PricedSet, Purchase
 from hexapod_doe.records.results import Analysis
 from hexapod_doe.reporting.figures.chart import Chart
-from hexapod_doe.reporting.figures.parts import canvas, is_wide, unit_label
+from hexapod_doe.reporting.figures.parts import canvas, unit_label
 from hexapod_doe.reporting.figures.style import BLUE, INK, MUTED, ORANGE, SURFACE
 from hexapod_doe.reporting.formats import number, percent
 
@@ -23,9 +23,9 @@ def cost_front(analysis: Analysis) -> Chart | None:
     if purchase is None:
         return None
 
-    def draw(width: float) -> Figure:
-        figure, axes = canvas(width, 4.0 if is_wide(width) else 3.4)
-        _draw_front(axes, purchase, is_wide(width))
+    def draw() -> Figure:
+        figure, axes = canvas(4.0)
+        _draw_front(axes, purchase)
         axes.set_xlabel(f'cost of the devices / {purchase.currency}')
         axes.set_ylabel(f'predicted {unit_label(analysis)}')
         return figure
@@ -41,7 +41,7 @@ def cost_front(analysis: Analysis) -> Chart | None:
     )
 
 
-def _draw_front(axes: Axes, purchase: Purchase, wide: bool) -> None:
+def _draw_front(axes: Axes, purchase: Purchase) -> None:
     by_label = {priced.label: priced for priced in purchase.sets}
     front = [by_label[label] for label in purchase.front]
     axes.plot(
@@ -53,8 +53,7 @@ def _draw_front(axes: Axes, purchase: Purchase, wide: bool) -> None:
         _draw_member(axes, priced, BLUE)
     chosen = by_label[purchase.cheapest]
     _draw_member(axes, chosen, ORANGE)
-    named = front if wide else [s for s in front if s is chosen or s is front[-1]]
-    _annotate(axes, [*named, *([] if chosen in front else [chosen])], chosen)
+    _annotate(axes, [*front, *([] if chosen in front else [chosen])], chosen)
 
 
 def _draw_member(axes: Axes, priced: PricedSet, colour: str) -> None:

@@ -12,7 +12,7 @@ from scipy import stats
 from hexapod_doe.records.results import Analysis, Step
 from hexapod_doe.reporting.figures.chart import Chart
 from hexapod_doe.reporting.figures.parts import canvas
-from hexapod_doe.reporting.figures.style import BLUE, INK, MUTED, ORANGE, SURFACE
+from hexapod_doe.reporting.figures.style import BLUE, INK, MUTED, NARROW, ORANGE, SURFACE
 from hexapod_doe.reporting.formats import count, number, number_fixed, probability
 
 BINS = 20
@@ -28,8 +28,8 @@ def histogram(analysis: Analysis, step: Step) -> Chart:
     residuals = np.array(step.residuals)
     counts, edges = np.histogram(residuals, BINS)
 
-    def draw(width: float) -> Figure:
-        figure, axes = canvas(width, 2.7)
+    def draw() -> Figure:
+        figure, axes = canvas(2.7, NARROW)
         axes.bar(edges[:-1], counts, np.diff(edges), align='edge', color=BLUE, alpha=0.75,
                  edgecolor=SURFACE, linewidth=0.5)  # fmt: skip
         spread = residuals.std()
@@ -66,8 +66,8 @@ def normal_probability(analysis: Analysis, step: Step) -> Chart:
     spread = data['residual'].std(ddof=0)
     p = float(stats.shapiro(data['residual']).pvalue) if spread > 0 and len(data) > 2 else None
 
-    def draw(width: float) -> Figure:
-        figure, axes = canvas(width, 2.9)
+    def draw() -> Figure:
+        figure, axes = canvas(2.9, NARROW)
         ends = np.array([data['quantile'].min(), data['quantile'].max()])
         axes.plot(spread * ends, ends, color=MUTED, linewidth=0.9)
         axes.plot(data['residual'], data['quantile'], 'o', color=BLUE, markersize=3, alpha=0.8)
@@ -133,8 +133,8 @@ def against_order(analysis: Analysis, step: Step) -> Chart:
 def _scatter(
     name: str, title: str, caption: str, data: pd.DataFrame, x: str, x_label: str, y_label: str
 ) -> Chart:
-    def draw(width: float) -> Figure:
-        figure, axes = canvas(width, 2.7)
+    def draw() -> Figure:
+        figure, axes = canvas(2.7, NARROW)
         axes.axhline(0, color=MUTED, linewidth=0.8)
         for outlier, colour in ((False, BLUE), (True, ORANGE)):
             part = data[data['outlier'] == outlier]

@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 
 from hexapod_doe.records.results import Analysis
 from hexapod_doe.reporting.figures.chart import Chart
-from hexapod_doe.reporting.figures.parts import grid, is_wide
+from hexapod_doe.reporting.figures.parts import grid
 from hexapod_doe.reporting.figures.style import BLUE, MUTED
 from hexapod_doe.tables.table import TERM_PREFIX
 
@@ -28,9 +28,8 @@ def reward_terms(analysis: Analysis) -> Chart | None:
     first = analysis.curves['episode'] // length * length
     data = analysis.curves.assign(episode=first).groupby(['case', 'episode'])[terms].mean()
 
-    def draw(width: float) -> Figure:
-        columns = 3 if is_wide(width) else 2
-        figure, panels = grid(width, len(terms), columns, 1.1, gap=0.45)
+    def draw() -> Figure:
+        figure, panels = grid(len(terms), 3, 1.1, gap=0.45)
         for axes, term in zip(panels, terms, strict=True):
             _draw_term(axes, data[term].unstack('case'))
             axes.set_title(term.removeprefix(TERM_PREFIX), loc='left', fontsize=8.5, pad=3)

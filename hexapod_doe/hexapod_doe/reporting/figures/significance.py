@@ -15,7 +15,7 @@ from hexapod_doe.designs.terms import CONSTANT
 from hexapod_doe.fitting.alias_matrix import short_alias
 from hexapod_doe.records.results import Analysis, Step
 from hexapod_doe.reporting.figures.chart import Chart
-from hexapod_doe.reporting.figures.parts import canvas, is_wide
+from hexapod_doe.reporting.figures.parts import canvas
 from hexapod_doe.reporting.figures.style import BLUE, INK, MUTED, ORANGE, SURFACE
 from hexapod_doe.reporting.formats import count, listing
 
@@ -62,8 +62,8 @@ def pareto(analysis: Analysis) -> Chart | None:
         return None
     shown = found.data.head(MAX_BARS)
 
-    def draw(width: float) -> Figure:
-        figure, axes = canvas(width, 0.9 + 0.21 * len(shown))
+    def draw() -> Figure:
+        figure, axes = canvas(0.9 + 0.21 * len(shown))
         colours = np.where(shown['effect'] > 0, BLUE, ORANGE)
         solid = shown['size'] > found.limits[-1][1]
         bars = axes.barh(
@@ -100,8 +100,8 @@ def half_normal(analysis: Analysis) -> Chart | None:
     data = data.assign(quantile=stats.norm.ppf(0.5 + share / 2))
     slope = _zahn(data)
 
-    def draw(width: float) -> Figure:
-        figure, axes = canvas(width, 3.4 if is_wide(width) else 3.0)
+    def draw() -> Figure:
+        figure, axes = canvas(3.4)
         top = float(data['quantile'].max())
         axes.plot([0, top], [0, slope * top], color=MUTED, linewidth=0.9)
         active = data['term'].isin(found.active)

@@ -68,7 +68,7 @@ RC: dict[Any, Any] = {
 """Settings of matplotlib while a figure is drawn and saved."""
 
 WIDE, NARROW = 7.2, 3.5
-"""Widths of a figure on a desk and on a phone, in inches of 72 units."""
+"""Widths of a figure and of half of one, in inches of 72 units."""
 
 
 def theme_css(theme: int) -> str:
