@@ -6,3 +6,4 @@
 import gymnasium
 
 gymnasium.register(id='HexapodLine-v0', entry_point='hexapod_agent.environment.env:HexapodLine')
+gymnasium.register(id='HexapodGraph-v0', entry_point='hexapod_agent.nodes.graph_env:HexapodGraph')

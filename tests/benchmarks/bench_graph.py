@@ -1,7 +1,11 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""Control periods per second without a learner: environment, composed worker, four processes."""
+"""Control periods per second without a learner, in the environments and of workers.
+
+Of the Gymnasium environment, a composed worker, a worker of four processes, and the Gymnasium
+environment that drives the nodes sim and cpg as processes.
+"""
 
 from __future__ import annotations
 
@@ -18,6 +22,7 @@ from pathlib import Path
 import numpy as np
 import rclpy
 from hexapod_agent.environment.env import HexapodLine
+from hexapod_agent.nodes.graph_env import HexapodGraph
 from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_agent.specification.spec_text import changes_text
 from hexapod_cpg.mapping import ACTION_SIZE
@@ -32,13 +37,15 @@ ANSWER_S = 15.0  # an episode takes one or two
 OBSERVATIONS = 'ABCDE'
 # The buffer never holds a batch, so nothing is learned.
 NO_LEARNER = 'ddpg: {batch_size: 100000}\ntraining: {evaluation: 0}\n'
-TARGETS = {'environment': 4000, 'composed worker': 2000, 'four processes': 700}
+TARGETS = {
+    'environment': 4000, 'composed worker': 2000, 'four processes': 700, 'HexapodGraph-v0': 700,
+}  # fmt: skip
 """Periods per second that two idle cores are to reach."""
 
 
-def environment() -> float:
-    """Return periods per second of the bare environment."""
-    env = HexapodLine(OBSERVATIONS, RunSpec.load())
+def environment(env: HexapodLine | HexapodGraph) -> float:
+    """Return periods per second of an environment, its first episode apart."""
+    env.reset(seed=1)
     action = np.zeros(ACTION_SIZE, dtype=np.float32)
     periods = 0
     began = time.perf_counter()
@@ -49,7 +56,9 @@ def environment() -> float:
             _, _, terminated, truncated, _ = env.step(action)
             ended = terminated or truncated
             periods += 1
-    return periods / (time.perf_counter() - began)
+    rate = periods / (time.perf_counter() - began)
+    env.close()
+    return rate
 
 
 class Client:
@@ -118,9 +127,10 @@ def main() -> None:
         config.write_text(NO_LEARNER)
         client = Client()
         rates = {
-            'environment': environment(),
+            'environment': environment(HexapodLine(OBSERVATIONS, RunSpec.load())),
             'composed worker': launched(client, config, 'composed', 'true'),
             'four processes': launched(client, config, 'separate', 'false'),
+            'HexapodGraph-v0': environment(HexapodGraph(OBSERVATIONS)),
         }
     for name, rate in rates.items():
         share = rate / rates['environment']

@@ -49,7 +49,37 @@ def read_observation(
     return spec.assemble(readings, previous_action)
 
 
-class HexapodLine(gymnasium.Env[Observation, NDArray[np.float32]]):
+class LineEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
+    """What the environments of a walk along a line have in common: spaces, runs and episodes.
+
+    Attributes:
+        config: What decides a run.
+        observation_spec: What is observed.
+    """
+
+    def __init__(self, observations: str | None, config: RunSpec | str | Path | None) -> None:
+        spec = config if isinstance(config, RunSpec) else RunSpec.load(config)
+        self.config = spec if observations is None else spec.observing(observations)
+        self.observation_spec = self.config.observed
+        self.observation_space = gymnasium.spaces.Box(
+            -1.0, 1.0, (self.observation_spec.size,), np.float32
+        )
+        self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (ACTION_SIZE,), np.float32)
+        self._run_seed = 0
+        self._episode = -1
+
+    def _begin(self, seed: int | None, options: dict[str, Any] | None) -> int:
+        """Return the seed of the episode that a reset begins."""
+        super().reset(seed=seed)
+        if seed is not None:
+            self._run_seed, self._episode = seed, -1
+        elif self._episode < 0:
+            self._run_seed = int(self.np_random.integers(2**63))
+        self._episode = (options or {}).get('episode', self._episode + 1)
+        return episode_seed(self._run_seed, self._episode)
+
+
+class HexapodLine(LineEnv):
     """A hexapod that walks to a line on the floor and along it.
 
     ## Action space
@@ -130,17 +160,9 @@ class HexapodLine(gymnasium.Env[Observation, NDArray[np.float32]]):
         height: int = 320,
         camera: str = 'track',
     ) -> None:
-        spec = config if isinstance(config, RunSpec) else RunSpec.load(config)
-        self.config = spec if observations is None else spec.observing(observations)
-        self.observation_spec = self.config.observed
+        super().__init__(observations, config)
         self.task = LineTask(self.config.task, self.config.sensors, self.config.world)
         self.cpg = Cpg(self.config.cpg.hopf)
-        self.observation_space = gymnasium.spaces.Box(
-            -1.0, 1.0, (self.observation_spec.size,), np.float32
-        )
-        self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (ACTION_SIZE,), np.float32)
-        self._run_seed = 0
-        self._episode = -1
         self._previous_action = np.zeros(ACTION_SIZE, np.float32)
         self._joint_targets = _STANDING.copy()
         self._picture = Picture(self.task.simulation, render_mode, width, height, camera)
@@ -151,13 +173,8 @@ class HexapodLine(gymnasium.Env[Observation, NDArray[np.float32]]):
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
         """Begin an episode; see the class for seed and options."""
-        super().reset(seed=seed)
-        if seed is not None:
-            self._run_seed, self._episode = seed, -1
-        elif self._episode < 0:
-            self._run_seed = int(self.np_random.integers(2**63))
-        self._episode = (options or {}).get('episode', self._episode + 1)
-        self.outcome = self.task.reset(episode_seed(self._run_seed, self._episode))
+        chosen = self._begin(seed, options)
+        self.outcome = self.task.reset(chosen)
         self.cpg.reset()
         self._previous_action = np.zeros(ACTION_SIZE, np.float32)
         self._joint_targets = _STANDING.copy()

@@ -16,6 +16,7 @@ from hexapod_node.lock_step import LockStep
 from hexapod_node.raw_topics import message_class
 from hexapod_node.stamps import time_message
 from hexapod_sim.robot import CONTROL_PERIOD_NS
+from hexapod_sim.task import Outcome
 from numpy.typing import NDArray
 
 from hexapod_agent.learning.player import Agent
@@ -46,9 +47,11 @@ class ControlLoop:
     def __init__(
         self, node: Node, commands: LockStepPublisher, config: RunSpec, timeout_s: float
     ) -> None:
-        self._commands, self._spec, self._config = commands, config.observed, config
+        self._node, self._commands = node, commands
+        self._spec, self._config = config.observed, config
         self._command = CpgCommand()
         self._action = np.zeros(ACTION_SIZE, dtype=np.float32)
+        self._stamp_ns = 0
         self.periods = 0
         # The treatment: these topics and no other sensor.
         topics = {
@@ -90,22 +93,42 @@ class ControlLoop:
         Raises:
             hexapod_node.lock_step.LockStepTimeoutError: a topic stayed silent.
         """
-        self._lock_step.start(start_ns)
-        stamp_ns = start_ns
+        self.begin_episode(start_ns)
         while True:
-            messages = await self._lock_step.next_period()
-            outcome = outcome_from_message(messages[OUTCOME])
-            observation = self._observe(messages)
+            observation, outcome = await self.observe()
             if outcome.terminated or outcome.truncated:
                 agent.end_episode(observation, outcome)
-                return stamp_ns
-            self._action = agent.observe(observation, outcome)
-            self._publish_command(stamp_ns)
+                return self._stamp_ns
+            self.act(agent.observe(observation, outcome))
             agent.learn()  # while the pattern generator and the sim are at work
-            stamp_ns += CONTROL_PERIOD_NS
-            self.periods += 1
 
-    def _observe(self, messages: Mapping[str, Any]) -> NDArray[Any]:
+    def begin_episode(self, start_ns: int) -> None:
+        """Expect the first observation, of so many ns."""
+        self._stamp_ns = start_ns
+        self._lock_step.start(start_ns)
+
+    async def observe(self) -> tuple[NDArray[np.float32], Outcome]:
+        """Return what is observed once a period is complete, and what it earned.
+
+        Raises:
+            hexapod_node.lock_step.LockStepTimeoutError: a topic stayed silent.
+        """
+        messages = await self._lock_step.next_period()
+        return self._assembled(messages), outcome_from_message(messages[OUTCOME])
+
+    def act(self, action: NDArray[np.float32]) -> None:
+        """Have the robot do what an action says, in the period that begins."""
+        self._action = action
+        self._publish_command(self._stamp_ns)
+        self._stamp_ns += CONTROL_PERIOD_NS
+        self.periods += 1
+
+    def listeners(self) -> dict[str, int]:
+        """Return how many subscriptions each topic must have before an episode begins."""
+        topics = [self._node.resolve_topic_name('joint_trajectory'), self._commands.topic_name]
+        return dict.fromkeys([*topics, *self.topics], 1)
+
+    def _assembled(self, messages: Mapping[str, Any]) -> NDArray[np.float32]:
         readings: dict[str, NDArray[Any]] = {}
         for channel in self._spec.channels:
             if channel.topics:

@@ -7,15 +7,14 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import EpisodeResult
-from hexapod_node.coroutines import until_true
-from hexapod_node.matching import count_subscriber_nodes, subscribed_topics, unmatched
+from hexapod_node.matching import subscribed_topics
 from hexapod_node.timers import call_every
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from hexapod_sim.sensor_table import CHANNELS
@@ -30,7 +29,7 @@ from hexapod_agent.learning.summary import EpisodeSummary
 from hexapod_agent.learning.training import Trainer
 from hexapod_agent.nodes.control_loop import OUTCOME, ControlLoop
 from hexapod_agent.nodes.messages import summary_to_message
-from hexapod_agent.nodes.peers import PeerError, Peers
+from hexapod_agent.nodes.peers import Peers, until_heard, with_others
 from hexapod_agent.specification.run_spec import RunSpec
 
 if TYPE_CHECKING:
@@ -216,38 +215,23 @@ class GraphRun:
         self._loop.make_ready()
         agent.begin_episode(episode)
         listeners = functools.partial(self._listeners, sampled)
-        await self._until_heard(listeners)
-        start_ns = await self._context.peers.begin_episode(
+        context = self._context
+        publishers = context.commands, context.results, context.evaluation
+        await until_heard(self._node, publishers, listeners, context.timeout_s)
+        start_ns = await context.peers.begin_episode(
             episode_seed(seed, episode), listeners, self._last_ns + CONTROL_PERIOD_NS
         )
         return await self._loop.run_episode(agent, start_ns)
 
     def _listeners(self, sampled: bool) -> dict[str, int]:
         """Return how many subscriptions each topic must have before the episode begins."""
-        resolve = self._node.resolve_topic_name
-        listeners = {resolve('joint_trajectory'): 1, resolve('cpg/command'): 1}
-        listeners |= dict.fromkeys(self._loop.topics, 1)
+        resolve, listeners = self._node.resolve_topic_name, self._loop.listeners()
         if self._goal.bag:
             listeners |= {resolve('episode_result'): 1, resolve('evaluation_result'): 1}
         if sampled:
             for topic in self._recorded_topics():
                 listeners[topic] = listeners.get(topic, 0) + 1
-        # Whoever else listens must not be taken for one of them.
-        return {
-            topic: max(least, count_subscriber_nodes(self._node, topic))
-            for topic, least in listeners.items()
-        }
-
-    async def _until_heard(self, listeners: Callable[[], Mapping[str, int]]) -> None:
-        """Wait until the agent's own topics are matched."""
-        context = self._context
-
-        def reason() -> str:
-            results = context.results, context.evaluation
-            return unmatched([context.commands, *results], listeners())
-
-        if not await until_true(self._node, lambda: not reason(), context.timeout_s):
-            raise PeerError(f'{reason()} after {context.timeout_s:g} s, expected a running node')
+        return with_others(self._node, listeners)
 
     def _recorded_topics(self) -> list[str]:
         return [self._node.resolve_topic_name(t) for t in (*_SENSOR_TOPICS, *_PROTOCOL_TOPICS)]

@@ -19,6 +19,7 @@ from hexapod_interfaces.srv import (
     StartRecording,
 )
 from hexapod_node.coroutines import ServiceUnavailableError, call, sleep, until_true
+from hexapod_node.matching import SubscriptionCounter, count_subscriber_nodes, unmatched
 from hexapod_node.parameters import to_messages
 from hexapod_node.stamps import time_message, to_nanoseconds
 from rcl_interfaces.srv import ListParameters, SetParametersAtomically
@@ -183,6 +184,33 @@ class Peers:
     async def _ask(self, client: Any, request: Any) -> Any:
         response = await call(self._node, client, request, self._timeout_s)
         return _succeeded(client, response)
+
+
+async def until_heard(
+    node: Node,
+    publishers: Sequence[SubscriptionCounter],
+    listeners: Callable[[], Mapping[str, int]],
+    timeout_s: float,
+) -> None:
+    """Wait until a node's own topics are matched.
+
+    Raises:
+        PeerError: They are not within the time.
+    """
+
+    def reason() -> str:
+        return unmatched(publishers, listeners())
+
+    if not await until_true(node, lambda: not reason(), timeout_s):
+        raise PeerError(f'{reason()} after {timeout_s:g} s, expected a running node')
+
+
+def with_others(node: Node, listeners: Mapping[str, int]) -> dict[str, int]:
+    """Return the least numbers of listeners where whoever else listens is not one of them."""
+    return {
+        topic: max(least, count_subscriber_nodes(node, topic))
+        for topic, least in listeners.items()
+    }
 
 
 def _succeeded(client: Any, response: Any) -> Any:
