@@ -16,8 +16,6 @@ __all__ = [
     'EventsWriter',
     'SessionLog',
     'fused_adam',
-    'layer_norm',
-    'layer_norm_backward',
     'relu_backward',
     'scalar',
 ]
@@ -40,20 +38,6 @@ def fused_adam(rows: Sequence[list[Tensor]], learning_rate: float) -> None:
         lr=learning_rate, beta1=_DECAY_MEAN, beta2=_DECAY_SQUARE,
         weight_decay=0.0, eps=_EPSILON, amsgrad=False, maximize=False,
     )  # fmt: skip
-
-
-def layer_norm(x: Tensor, epsilon: float) -> tuple[Tensor, Tensor, Tensor]:
-    """Return x with each row at mean 0 and variance 1, the rows' means and 1 / deviations."""
-    return torch.native_layer_norm(x, x.shape[-1:], None, None, epsilon)
-
-
-def layer_norm_backward(gradient: Tensor, x: Tensor, mean: Tensor, reciprocal: Tensor) -> Tensor:
-    """Return the gradient of x, given that of `layer_norm`'s rows and what else it returned."""
-    found: Tensor
-    found, _, _ = torch.ops.aten.native_layer_norm_backward(
-        gradient, x, x.shape[-1:], mean, reciprocal, None, None, (True, False, False)
-    )
-    return found
 
 
 def relu_backward(gradient: Tensor, activation: Tensor) -> Tensor:

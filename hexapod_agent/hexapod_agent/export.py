@@ -20,7 +20,7 @@ from hexapod_sim.sensor_table import PREVIOUS_ACTION
 from numpy.typing import NDArray
 from onnx import TensorProto, helper, numpy_helper
 
-from hexapod_agent.algorithms.policies import NORM_EPSILON, SCALED_LIMIT, MlpPolicy
+from hexapod_agent.algorithms.policies import MlpPolicy
 from hexapod_agent.deployment import agent_file
 from hexapod_agent.deployment.agent_file import TrainedAgent
 from hexapod_agent.specification.observation import ObservationSpec
@@ -64,18 +64,7 @@ def policy_model(agent: TrainedAgent) -> onnx.ModelProto:
         helper.make_node('Clip', ['scaled', 'lowest', 'highest'], ['clipped']),
         helper.make_node('Cast', ['clipped'], ['observation'], to=TensorProto.FLOAT),
     ]
-    if policy.scale is not None:
-        nodes += [
-            helper.make_node('Sub', ['observation', 'mean'], ['difference']),
-            helper.make_node('Mul', ['difference', 'gain'], ['amplified']),
-            helper.make_node('Clip', ['amplified', 'least', 'most'], ['input']),
-        ]
-        constants |= {
-            'mean': policy.scale[0], 'gain': policy.scale[1],
-            'least': np.array(-SCALED_LIMIT, np.float32),
-            'most': np.array(SCALED_LIMIT, np.float32),
-        }  # fmt: skip
-    layers, weights = _layers('observation' if policy.scale is None else 'input', policy)
+    layers, weights = _layers('observation', policy)
     graph = helper.make_graph(
         [*nodes, *layers],
         'hexapod_policy',
@@ -98,21 +87,13 @@ def policy_model(agent: TrainedAgent) -> onnx.ModelProto:
 def _layers(
     x: str, policy: MlpPolicy
 ) -> tuple[list[onnx.NodeProto], dict[str, NDArray[np.float32]]]:
-    """Affine layers with ReLU between them, normalised before it or not, and +-1 at the end."""
+    """Affine layers with ReLU between them, and +-1 at the end."""
     nodes, constants = [], dict[str, NDArray[np.float32]]()
     for number, (weight, bias) in enumerate(policy.layers):
         name, last = f'layer{number}', number == len(policy.layers) - 1
         arrays = {f'{name}.weight': weight, f'{name}.bias': bias}
         nodes.append(helper.make_node('Gemm', [x, *arrays], [f'{name}.sum'], transB=1))
         x = f'{name}.sum'
-        if policy.layer_norm and not last:
-            gain, x = f'{name}.gain', f'{name}.normalized'
-            nodes.append(
-                helper.make_node(
-                    'LayerNormalization', [f'{name}.sum', gain], [x], epsilon=NORM_EPSILON
-                )
-            )
-            arrays[gain] = np.ones(bias.shape, np.float32)
         constants |= arrays
         if not last:
             nodes.append(helper.make_node('Relu', [x], [f'{name}.output']))

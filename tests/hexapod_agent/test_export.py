@@ -20,26 +20,10 @@ from hexapod_agent import export
 TOLERANCE = 1e-5
 
 
-@pytest.fixture(
-    params=[
-        ('', 'small_config'),
-        ('BC', 'small_config'),
-        (LETTERS, 'small_config'),
-        ('B', 'switched_config'),
-    ]
-)
+@pytest.fixture(params=['', 'BC', LETTERS])
 def trainer(make_trainer, request):
-    letters, config = request.param
-    made = make_trainer(letters, config=request.getfixturevalue(config))
-    actor = made.learner.networks.actor_parameters
-    actor.flat.mul_(8.0)  # actions of every size, also saturated ones
-    if made.learner.scale:
-        generator = np.random.default_rng(1)
-        for _ in range(9):
-            made.learner.scale.add(generator.normal(0.1, 0.3, made.spec.size).astype(np.float32))
-        made.learner.scale.refresh()
-    if made.config.learner.actor.layer_norm:  # which undoes the scale of all but the last layer
-        actor.arrays['output.weight'].mul_(32.0)
+    made = make_trainer(request.param)
+    made.learner.networks.actor_parameters.flat.mul_(8.0)  # actions of every size, also saturated
     return made
 
 

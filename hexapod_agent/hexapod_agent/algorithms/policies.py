@@ -14,9 +14,6 @@ from numpy.typing import NDArray
 Array = NDArray[np.float32]
 Policy = Callable[[Array], Array]
 
-NORM_EPSILON = 1e-5  # added to a row's variance
-SCALED_LIMIT = 5.0  # standard deviations; an observation farther off counts as so far
-
 
 def constant_policy(action: Array) -> Policy:
     """Make an agent that always does the same; zeros are a straight walk."""
@@ -38,16 +35,10 @@ class MlpPolicy:
 
     Attributes:
         layers: Weight (outputs, inputs) and bias (outputs,) of each layer.
-        layer_norm: Whether each hidden layer is normalised to mean 0 and variance 1 before its
-            ReLU.
-        scale: Center and gain (observation size,) of the inputs, (observation - center) gain
-            within +-`SCALED_LIMIT`; None if observations are the inputs.
         squash: Whether tanh brings the last layer within +-1; else it is clipped there.
     """
 
     layers: tuple[tuple[Array, Array], ...]
-    layer_norm: bool = False
-    scale: tuple[Array, Array] | None = None
     squash: bool = True
 
     def __call__(self, observation: Array) -> Array:
@@ -57,14 +48,8 @@ class MlpPolicy:
     def features(self, observation: Array) -> Array:
         """Return what the last hidden layer makes of an observation."""
         features = observation
-        if self.scale is not None:
-            features = scaled(features, *self.scale)
         for weight, bias in self.layers[:-1]:
-            features = weight @ features + bias
-            if self.layer_norm:
-                features -= features.mean()
-                features /= np.sqrt(features @ features / features.size + NORM_EPSILON)
-            features = np.maximum(features, 0.0)
+            features = np.maximum(weight @ features + bias, 0.0)
         return features
 
     def outputs(self, features: Array) -> Array:
@@ -79,25 +64,12 @@ class MlpPolicy:
 
     def to_mapping(self) -> dict[str, Any]:
         """Return what it is made of, as `from_mapping` takes it."""
-        return {
-            'layers': [list(layer) for layer in self.layers],
-            'layer_norm': self.layer_norm,
-            'scale': None if self.scale is None else list(self.scale),
-            'squash': self.squash,
-        }
+        return {'layers': [list(layer) for layer in self.layers], 'squash': self.squash}
 
     @classmethod
     def from_mapping(cls, content: Mapping[str, Any]) -> 'MlpPolicy':
         """Make a policy of what `to_mapping` gave."""
-        scale = content['scale']
         return cls(
             tuple((weight, bias) for weight, bias in content['layers']),
-            content['layer_norm'],
-            None if scale is None else (scale[0], scale[1]),
             content.get('squash', True),  # there was nothing else
         )
-
-
-def scaled(observation: Array, center: Array, gain: Array) -> Array:
-    """Return an observation as the input of networks that scale it."""
-    return ((observation - center) * gain).clip(-SCALED_LIMIT, SCALED_LIMIT)

@@ -36,7 +36,13 @@ from hexapod_agent.specification.spec_text import (
     parsed_setting,
     read_changes,
 )
-from hexapod_agent.specification.validation import check_keys, modern, validated, with_algorithm
+from hexapod_agent.specification.validation import (
+    check_keys,
+    modern,
+    validated,
+    with_algorithm,
+    without_gone,
+)
 
 
 @dataclass(frozen=True)
@@ -214,7 +220,7 @@ def _built(base: Mapping[str, Any], changes: Any, source: str) -> RunSpec:
     """Validate each value of a base with changes."""
     if not isinstance(changes, Mapping):
         raise ConfigError(f'{source}: expected sections with keys, as article.yaml has them')
-    changes = modern(changes)
+    changes = without_gone(modern(changes), source)
     if isinstance(changes.get('observations'), str):
         chosen = parse_observations(changes['observations'])
         changes['observations'] = {letter: letter in chosen for letter in LETTERS}

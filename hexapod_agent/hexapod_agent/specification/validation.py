@@ -20,6 +20,15 @@ _adapter: Callable[[Any], TypeAdapter[Any]] = cache(TypeAdapter)
 
 # Sections of the layout before there was one for the learner, of bags and checkpoints.
 _OF_THE_LEARNER = ('actor', 'critic', 'ddpg', 'noise')
+# Switches of learners that trials have shown no use of (docs/learning.md). Specifications of bags,
+# plans and agents have them, and may where they are off.
+_GONE = (
+    ('actor', 'layer_norm'),
+    ('critic', 'layer_norm'),
+    ('critic', 'twin'),
+    ('ddpg', 'normalize_observations'),
+)
+_LAST_WITH_THEM = 'd8a52fe'
 
 
 def validated(kind: type[T], values: Any, source: str, prefix: str = '') -> T:
@@ -68,6 +77,29 @@ def modern(changes: Mapping[str, Any]) -> dict[str, Any]:
         return dict(changes)
     kept = {name: value for name, value in changes.items() if name not in moved}
     return merged(kept, {'learner': moved})
+
+
+def without_gone(changes: Mapping[str, Any], source: str) -> Mapping[str, Any]:
+    """Return changes without the switches that are gone.
+
+    Raises:
+        ConfigError: One is on.
+    """
+    learner = changes.get('learner')
+    if not isinstance(learner, Mapping):
+        return changes
+    kept = dict(learner)
+    for section, key in _GONE:
+        held = kept.get(section)
+        if not isinstance(held, Mapping) or key not in held:
+            continue
+        if held[key] is not False:
+            raise ConfigError(
+                f'{source}: learner.{section}.{key} is {quoted(held[key])}, expected false or '
+                f'nothing: the switch is gone, commit {_LAST_WITH_THEM} was the last to have it'
+            )
+        kept[section] = {name: value for name, value in held.items() if name != key}
+    return {**changes, 'learner': kept}
 
 
 def check_keys(base: Mapping[str, Any], changes: Any, source: str, prefix: str) -> None:

@@ -8,6 +8,7 @@ from dataclasses import fields
 import pytest
 import yaml
 from hexapod_agent.specification.run_spec import ConfigError, RunSpec
+from hexapod_agent.specification.spec_text import nest
 from hexapod_sim.article import article_text
 from hexapod_sim.sensor_table import LETTERS, SENSORS
 
@@ -163,6 +164,26 @@ def test_the_layout_before_there_was_a_learner_is_read():
     spec = RunSpec.from_mapping(old, 'an older bag')
     assert (spec.learner.actor.hidden, spec.learner.ddpg.discount) == ((8,), 0.5)
     assert spec.training.window == 3
+
+
+@pytest.mark.parametrize(
+    'key',
+    [
+        'learner.actor.layer_norm',
+        'learner.critic.layer_norm',
+        'learner.critic.twin',
+        'learner.ddpg.normalize_observations',
+    ],
+)
+def test_a_switch_that_is_gone_may_be_off_and_not_on(key):
+    """Bags, plans and agents have these keys."""
+    off = nest(key, False)
+    assert RunSpec.from_mapping(off, 'an older bag') == RunSpec.load()
+    assert RunSpec.from_mapping(off['learner'], 'an older layout') == RunSpec.load()
+    assert RunSpec.load(None, [f'{key}=false']) == RunSpec.load()
+    message = rf'^--set {key}=on: {key} is True, expected false or nothing: .*d8a52fe'
+    with pytest.raises(ConfigError, match=message):
+        RunSpec.load(None, [f'{key}=on'])
 
 
 def test_text_round_trip():

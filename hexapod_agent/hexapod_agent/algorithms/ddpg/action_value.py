@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""One critic of an agent with what belongs to it: target and optimiser."""
+"""The critic of an agent with what belongs to it: target and optimiser."""
 
 import torch
 from torch import Tensor
@@ -35,9 +35,9 @@ class ActionValue:
         self.optimizer = ClippedAdam(
             self.parameters, config.learning_rate, config.l2, config.gradient_threshold
         )
-        norm, gradients = config.layer_norm, self.optimizer.gradients
-        self.online = Critic(self.parameters, batch_size, gradients, compute_dtype, norm)
-        self.target = Critic(self.target_parameters, batch_size, None, compute_dtype, norm)
+        gradients = self.optimizer.gradients
+        self.online = Critic(self.parameters, batch_size, gradients, compute_dtype)
+        self.target = Critic(self.target_parameters, batch_size, None, compute_dtype)
 
     def learn(self, batch: Batch, target: Tensor) -> Tensor:
         """Take a step towards target values (..., batch, 1); return the loss before it."""

@@ -31,7 +31,6 @@ class ActorConfig:
         gradient_threshold: Largest L2 norm of an array's gradient.
         preactivation_penalty: Weight c of the loss term c mean(z²), z the output before tanh.
         normalize_loss: Whether the loss's value term is divided by mean |Q| of the batch.
-        layer_norm: Whether each hidden layer is normalised before its ReLU.
     """
 
     hidden: Layers
@@ -40,7 +39,6 @@ class ActorConfig:
     gradient_threshold: PositiveFactor
     preactivation_penalty: Factor
     normalize_loss: bool
-    layer_norm: bool
 
 
 @dataclass(frozen=True)
@@ -54,8 +52,6 @@ class CriticConfig:
         learning_rate: Adam's step size.
         l2: Factor of the L2 term in the gradient, weights only.
         gradient_threshold: Largest L2 norm of an array's gradient.
-        layer_norm: Whether each hidden layer is normalised before its ReLU.
-        twin: Whether there are two, the lesser of whose target values is learned from.
     """
 
     hidden: Layers
@@ -64,8 +60,6 @@ class CriticConfig:
     learning_rate: Factor
     l2: Factor
     gradient_threshold: PositiveFactor
-    layer_norm: bool
-    twin: bool
 
 
 @dataclass(frozen=True)
@@ -82,8 +76,6 @@ class UpdateConfig:
             fill no group go into the buffer alone.
         update_ratio: Updates per step; those of a group are a whole number.
         reward_scale: Factor of the reward as the critic learns it.
-        normalize_observations: Whether the networks take observations less their mean and over
-            their standard deviation, of all that the run has observed so far.
     """
 
     batch_size: Count
@@ -94,7 +86,6 @@ class UpdateConfig:
     update_every: Count
     update_ratio: PositiveFactor
     reward_scale: PositiveFactor
-    normalize_observations: bool
 
     @property
     def group_size(self) -> int:

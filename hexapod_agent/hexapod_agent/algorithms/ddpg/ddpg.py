@@ -23,15 +23,13 @@ METRICS = ('critic_loss', 'actor_loss', 'mean_q')
 """What an update sees: the mean squared temporal difference; -mean Q of the policy's actions, with
 the terms that the config adds; mean Q of the policy's actions."""
 
-_CRITICS = ('critic', 'twin_critic')  # names in a state
-
 
 class Ddpg:
     """Actor, critic, their targets and optimisers.
 
     Attributes:
         actor_parameters: Online actor.
-        critic_parameters: Online critic, the first of two.
+        critic_parameters: Online critic.
 
     Args:
         observation_size: Numbers of an observation.
@@ -65,30 +63,25 @@ class Ddpg:
         self.actor_parameters = ParameterStack(
             Actor.shapes(*sizes, actor.hidden), agents, dtype, device
         )
-        self._critics = [
-            ActionValue(*sizes, critic, batch_size, agents, dtype, compute_dtype, device)
-            for _ in range(2 if critic.twin else 1)
-        ]
-        self.critic_parameters = self._critics[0].parameters
+        self._critic = ActionValue(
+            *sizes, critic, batch_size, agents, dtype, compute_dtype, device
+        )
+        self.critic_parameters = self._critic.parameters
         if generator is not None:
-            for parameters in (self.actor_parameters, *(c.parameters for c in self._critics)):
+            for parameters in (self.actor_parameters, self.critic_parameters):
                 parameters.draw(initial_bounds(parameters.shapes), generator)
-            for each in self._critics:
-                each.parameters.arrays['output.bias'].add_(critic.initial_value)
-                each.target_parameters.flat.copy_(each.parameters.flat)
+            self.critic_parameters.arrays['output.bias'].add_(critic.initial_value)
+            self._critic.target_parameters.flat.copy_(self.critic_parameters.flat)
         self._actor_target_parameters = self.actor_parameters.copy()
         self._actor_optimizer = ClippedAdam(
             self.actor_parameters, actor.learning_rate, actor.l2, actor.gradient_threshold
         )
 
         # Acting computes with the master weights; the updates' hidden layers may not.
-        norm = actor.layer_norm
-        self._policy = Actor(self.actor_parameters, 1, layer_norm=norm)
+        self._policy = Actor(self.actor_parameters, 1)
         gradients = self._actor_optimizer.gradients
-        self._actor = Actor(self.actor_parameters, batch_size, gradients, compute_dtype, norm)
-        self._target_actor = Actor(
-            self._actor_target_parameters, batch_size, None, compute_dtype, norm
-        )
+        self._actor = Actor(self.actor_parameters, batch_size, gradients, compute_dtype)
+        self._target_actor = Actor(self._actor_target_parameters, batch_size, None, compute_dtype)
         if generator is not None:
             self._refresh()
 
@@ -133,29 +126,23 @@ class Ddpg:
     def _update(self, batch: Batch) -> tuple[Tensor, Tensor, Tensor]:
         critic_loss = self._update_critic(batch)
         actor_loss, mean_q = self._update_actor(batch)
-        for critic in self._critics:
-            critic.follow(self._smoothing)
+        self._critic.follow(self._smoothing)
         self._actor_target_parameters.flat.lerp_(self.actor_parameters.flat, self._smoothing)
         self._target_actor.refresh()
         return critic_loss.view(-1), actor_loss.view(-1), mean_q.view(-1)
 
     def _update_critic(self, batch: Batch) -> Tensor:
-        """Move every Q(s, a) towards y = r + bootstrap min Q'(s', mu'(s'))."""
+        """Move Q(s, a) towards y = r + bootstrap Q'(s', mu'(s'))."""
         next_action = self._target_actor.forward(batch.next_observation)
-        target, *others = [
-            critic.target.forward(batch.next_observation, next_action) for critic in self._critics
-        ]
-        for other in others:
-            torch.minimum(target, other, out=target)
+        target = self._critic.target.forward(batch.next_observation, next_action)
         torch.addcmul(batch.reward, batch.bootstrap, target, out=target)
-        losses = [critic.learn(batch, target) for critic in self._critics]
-        return losses[0] if len(losses) == 1 else torch.stack(losses).mean(dim=0)
+        return self._critic.learn(batch, target)
 
     def _update_actor(self, batch: Batch) -> tuple[Tensor, Tensor]:
         """Move mu(s) up the slope of Q(s, mu(s)) under the critic that was just updated."""
         config = self._actor_config
         action = self._actor.forward(batch.observation)
-        critic = self._critics[0].online
+        critic = self._critic.online
         value = critic.forward(batch.observation, action)
         mean_q, size = value.mean(dim=-2), value.shape[-2]
         # L = -mean Q / n + c mean z², dL/dQ = -1 / (n batch), n = mean |Q| or 1
@@ -210,17 +197,18 @@ class Ddpg:
         """Let the updates' networks take over parameters that have moved."""
         self._actor.refresh()
         self._target_actor.refresh()
-        for critic in self._critics:
-            critic.refresh()
+        self._critic.refresh()
 
     def _stacks(self) -> dict[str, ParameterStack]:
-        stacks = {'actor': self.actor_parameters, 'target_actor': self._actor_target_parameters}
-        for name, critic in zip(_CRITICS, self._critics, strict=False):
-            stacks |= {name: critic.parameters, f'target_{name}': critic.target_parameters}
-        return stacks
+        return {
+            'actor': self.actor_parameters,
+            'target_actor': self._actor_target_parameters,
+            'critic': self.critic_parameters,
+            'target_critic': self._critic.target_parameters,
+        }
 
     def _optimizers(self) -> dict[str, ClippedAdam]:
-        critics = zip(_CRITICS, self._critics, strict=False)
-        return {'actor_optimizer': self._actor_optimizer} | {
-            f'{name}_optimizer': critic.optimizer for name, critic in critics
+        return {
+            'actor_optimizer': self._actor_optimizer,
+            'critic_optimizer': self._critic.optimizer,
         }

@@ -11,8 +11,6 @@ import torch
 from torch import Tensor
 
 from hexapod_agent.algorithms.ddpg.parameters import ParameterStack
-from hexapod_agent.algorithms.policies import NORM_EPSILON
-from hexapod_agent.compat import layer_norm, layer_norm_backward, relu_backward
 
 
 class Cast:
@@ -137,34 +135,6 @@ class SingleUnit(Dense):
     def backward_input(self, y_gradient: Tensor) -> Tensor:
         """Gradient of the input, an outer product."""
         return torch.mul(y_gradient, self.weight, out=self._input_gradient)
-
-
-class Activation:
-    """ReLU, behind a normalisation of each row to mean 0 and variance 1 if wanted.
-
-    The normalisation has no gain and no shift: the next layer's weights and the bias are there.
-
-    Attributes:
-        output: What the last `forward` gave.
-    """
-
-    def __init__(self, normalize: bool) -> None:
-        self._normalize = normalize
-
-    def forward(self, x: Tensor) -> Tensor:
-        """Activate x, in place where nothing is normalised."""
-        if self._normalize:
-            self._x = x
-            x, self._mean, self._reciprocal = layer_norm(x, NORM_EPSILON)
-        self.output = torch.relu_(x)
-        return self.output
-
-    def backward(self, gradient: Tensor) -> Tensor:
-        """Gradient of the last x, given that of the output, which is overwritten."""
-        gradient = relu_backward(gradient, self.output)
-        if self._normalize:
-            gradient = layer_norm_backward(gradient, self._x, self._mean, self._reciprocal)
-        return gradient
 
 
 def layer_shapes(name: str, inputs: int, outputs: int) -> dict[str, tuple[int, ...]]:

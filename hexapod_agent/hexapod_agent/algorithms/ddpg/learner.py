@@ -16,7 +16,6 @@ from hexapod_agent.algorithms.ddpg.config import DdpgConfig
 from hexapod_agent.algorithms.ddpg.ddpg import METRICS, Ddpg
 from hexapod_agent.algorithms.ddpg.networks import Actor
 from hexapod_agent.algorithms.ddpg.parameters import ParameterStack
-from hexapod_agent.algorithms.ddpg.running_scale import RunningScale
 from hexapod_agent.algorithms.learner import Learner, LearnerConfig, Metrics, Problem
 from hexapod_agent.algorithms.noise import OrnsteinUhlenbeckNoise
 from hexapod_agent.algorithms.policies import MlpPolicy
@@ -29,7 +28,6 @@ class DdpgLearner(Learner):
     Attributes:
         problem: Sizes and lengths.
         networks: Networks and their update.
-        scale: How observations become the networks' inputs; None if they are.
         rate_share: Share of the learning rates in this episode.
     """
 
@@ -46,8 +44,7 @@ class DdpgLearner(Learner):
         self.networks = Ddpg(
             *sizes, config, _torch_generator(init), compute_dtype=compute_dtype(problem.precision)
         )
-        self.scale = RunningScale(sizes[0]) if ddpg.normalize_observations else None
-        self._policy = policy_of(self.networks.actor_parameters, config, self.scale)
+        self._policy = policy_of(self.networks.actor_parameters)
         self._replay = ReplayBuffer(ddpg.buffer_size, *sizes, ddpg.discount, ddpg.n_step)
         self._noise = OrnsteinUhlenbeckNoise(
             config.noise, sizes[1], problem.period_s, self._noise_generator
@@ -58,11 +55,9 @@ class DdpgLearner(Learner):
         self._step = 0
 
     def begin_episode(self, rate_share: float) -> None:
-        """Begin an episode: noise at its mean, and inputs scaled by all that was observed."""
+        """Begin an episode, with noise at its mean."""
         self.rate_share = rate_share
         self.networks.set_rate_share(rate_share)
-        if self.scale:
-            self.scale.refresh()
         self._noise.reset()
         self._action = None
 
@@ -80,8 +75,6 @@ class DdpgLearner(Learner):
     def store(self, observation: NDArray[np.float32], outcome: Outcome) -> None:
         """Add the transition that ends in `observation`, or begin an episode with it."""
         self._step = outcome.step
-        if self.scale:
-            self.scale.add(observation)
         if self._action is None:
             self._replay.begin(observation)
             return
@@ -113,11 +106,8 @@ class DdpgLearner(Learner):
         return dict(zip(METRICS, np.array(seen).T, strict=True))
 
     def sample(self, batch: Batch) -> None:
-        """Draw the transitions of the next updates, as many as the batches are, and scale them."""
+        """Draw the transitions of the next updates, as many as the batches are."""
         self._replay.sample(self._replay_generator, batch)
-        if self.scale:
-            self.scale.scale(batch.observation)
-            self.scale.scale(batch.next_observation)
 
     def policy(self) -> MlpPolicy:
         """Return the actor, on its own memory."""
@@ -125,9 +115,8 @@ class DdpgLearner(Learner):
 
     def state_dict(self) -> dict[str, Any]:
         """Return networks, optimisers, replay buffer and random states."""
-        scale = {'scale': self.scale.state_dict()} if self.scale else {}
         return {
-            'agent': self.networks.state_dict() | scale,
+            'agent': self.networks.state_dict(),
             'replay_generator': self._replay_generator.bit_generator.state,
             'noise_generator': self._noise_generator.bit_generator.state,
             'noise_sigma': self._noise.sigma,
@@ -137,24 +126,18 @@ class DdpgLearner(Learner):
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
         """Take over what `state_dict` gave, of a learner with the same configuration."""
         self.networks.load_state_dict(state['agent'])
-        if self.scale:
-            self.scale.load_state_dict(state['agent']['scale'])
         self._replay_generator.bit_generator.state = state['replay_generator']
         self._noise_generator.bit_generator.state = state['noise_generator']
         self._noise.sigma = state['noise_sigma']
         self._replay.restore(state['replay'])
 
 
-def policy_of(
-    parameters: ParameterStack, config: DdpgConfig, scale: RunningScale | None
-) -> MlpPolicy:
+def policy_of(parameters: ParameterStack) -> MlpPolicy:
     """Make a policy on the memory of the actor of a stack of one."""
     arrays = {name: array[0].numpy() for name, array in parameters.arrays.items()}
     layers = [name.removesuffix('.weight') for name in arrays if name.endswith('.weight')]
     return MlpPolicy(
-        tuple((arrays[f'{layer}.weight'], arrays[f'{layer}.bias']) for layer in layers),
-        config.actor.layer_norm,
-        None if scale is None else (scale.center, scale.gain),
+        tuple((arrays[f'{layer}.weight'], arrays[f'{layer}.bias']) for layer in layers)
     )
 
 
@@ -166,11 +149,7 @@ def policy_of_before(
     shapes = Actor.shapes(observation_size, action_size, config.actor.hidden)
     parameters = ParameterStack(shapes)
     parameters.flat.copy_(state['actor'])
-    scale = None
-    if config.ddpg.normalize_observations:
-        scale = RunningScale(observation_size)
-        scale.load_state_dict(state['scale'])
-    return policy_of(parameters, config, scale)
+    return policy_of(parameters)
 
 
 def compute_dtype(precision: str) -> torch.dtype | None:

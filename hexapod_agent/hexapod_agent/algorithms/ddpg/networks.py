@@ -17,7 +17,6 @@ import torch
 from torch import Tensor
 
 from hexapod_agent.algorithms.ddpg.layers import (
-    Activation,
     Cast,
     ComputeCopy,
     Dense,
@@ -25,6 +24,7 @@ from hexapod_agent.algorithms.ddpg.layers import (
     layer_shapes,
 )
 from hexapod_agent.algorithms.ddpg.parameters import ParameterStack
+from hexapod_agent.compat import relu_backward
 
 OUTPUT_BOUND = 5e-3  # of the output layers' initial weights
 
@@ -47,7 +47,6 @@ class Actor:
         batch: Observations per pass.
         gradients: Filled by `backward`; None for a pass that never goes back.
         dtype: Compute dtype of the hidden layers; that of the parameters if None.
-        layer_norm: Whether each hidden layer is normalised before its ReLU.
     """
 
     @staticmethod
@@ -66,13 +65,11 @@ class Actor:
         batch: int,
         gradients: ParameterStack | None = None,
         dtype: torch.dtype | None = None,
-        layer_norm: bool = False,
     ) -> None:
         master = parameters.flat.dtype
         compute = dtype or master
         self._copy = copy = ComputeCopy(parameters, gradients, compute)
         self._hidden = _branch(copy, 'hidden', batch)
-        self._activations = [Activation(layer_norm) for _ in self._hidden]
         self._output = Dense(parameters, gradients, 'output', batch)
         last = self._hidden[-1].output
         self._to_master = Cast(last, master)
@@ -90,8 +87,8 @@ class Actor:
     def forward(self, observation: Tensor) -> Tensor:
         """Actions of a batch, in the buffer `action`; `preactivation` holds them before tanh."""
         self._x = x = self._input_to_compute(observation)
-        for layer, activation in zip(self._hidden, self._activations, strict=True):
-            x = activation.forward(layer.forward(x))
+        for layer in self._hidden:
+            x = torch.relu_(layer.forward(x))
         self._features = self._to_master(x)
         self._output.forward(self._features)
         return torch.tanh(self.preactivation, out=self.action)
@@ -110,8 +107,8 @@ class Actor:
         )
         gradient.add_(self.preactivation, alpha=preactivation_factor)
         hidden = self._to_compute(self._output.backward_input(gradient))
-        gradient_in = self._activations[-1].backward(hidden)
-        _branch_backward(self._hidden, self._activations[:-1], self._x, gradient_in)
+        gradient_in = relu_backward(hidden, self._hidden[-1].output)
+        _branch_backward(self._hidden, self._x, gradient_in)
         self._copy.pass_gradients_on()
         self._output.backward(self._features, gradient)
 
@@ -127,7 +124,6 @@ class Critic:
         batch: Pairs of observation and action per pass.
         gradients: Filled by `backward`; None for a pass that never goes back.
         dtype: Compute dtype of the branches; that of the parameters if None.
-        layer_norm: Whether each hidden layer is normalised before its ReLU, the merged one too.
     """
 
     @staticmethod
@@ -148,13 +144,11 @@ class Critic:
         batch: int,
         gradients: ParameterStack | None = None,
         dtype: torch.dtype | None = None,
-        layer_norm: bool = False,
     ) -> None:
         master = parameters.flat.dtype
         compute = dtype or master
         self._copy = copy = ComputeCopy(parameters, gradients, compute)
         self._observation = _branch(copy, 'observation', batch)
-        self._activations = [Activation(layer_norm) for _ in self._observation]
         self._action = Dense(copy.parameters, copy.gradients, 'action', batch)
         self._output = SingleUnit(parameters, gradients, 'output', batch)
         self.value = self._output.output
@@ -177,17 +171,16 @@ class Critic:
         """Values (..., batch, 1) in the buffer `value`."""
         self._s = x = self._observation_to_compute(observation)
         self._a = self._action_to_compute(action)
-        *below, merge = self._activations
-        for layer, activation in zip(self._observation, below, strict=False):
-            x = activation.forward(layer.forward(x))
-        last = self._observation[-1]
+        *below, last = self._observation
+        for layer in below:
+            x = torch.relu_(layer.forward(x))
         if self._append:
             self._merged[..., self._observation_part] = last.forward(x)
             self._merged[..., self._action_part] = self._action.forward(self._a)
         else:
             last.product(x, last.bias + self._action.bias, self._merged)
             self._action.product(self._a, self._merged, self._merged)
-        self._features = self._to_master(merge.forward(self._merged))
+        self._features = self._to_master(torch.relu_(self._merged))
         return self._output.forward(self._features)
 
     def backward(self, value_gradient: Tensor) -> None:
@@ -195,7 +188,7 @@ class Critic:
         merged = self._merged_gradient(value_gradient)
         self._action.backward(self._a, merged[..., self._action_part])
         part = merged[..., self._observation_part]
-        _branch_backward(self._observation, self._activations[:-1], self._s, part)
+        _branch_backward(self._observation, self._s, part)
         self._copy.pass_gradients_on()
         self._output.backward(self._features, value_gradient)
 
@@ -209,7 +202,7 @@ class Critic:
     def _merged_gradient(self, value_gradient: Tensor) -> Tensor:
         """Gradient before the ReLU that follows the merge."""
         gradient = self._to_compute(self._output.backward_input(value_gradient))
-        return self._activations[-1].backward(gradient)
+        return relu_backward(gradient, self._merged)
 
 
 def _branch(copy: ComputeCopy, prefix: str, batch: int) -> list[Dense]:
@@ -222,11 +215,9 @@ def _branch(copy: ComputeCopy, prefix: str, batch: int) -> list[Dense]:
     ]
 
 
-def _branch_backward(
-    layers: list[Dense], activations: list[Activation], x: Tensor, gradient: Tensor
-) -> None:
-    """Fill the gradients of layers with activations between them, given the last output's."""
-    for below, layer in zip(activations[::-1], layers[:0:-1], strict=True):
+def _branch_backward(layers: list[Dense], x: Tensor, gradient: Tensor) -> None:
+    """Fill the gradients of layers with a ReLU between them, given the last output's."""
+    for below, layer in zip(layers[-2::-1], layers[:0:-1], strict=True):
         layer.backward(below.output, gradient)
-        gradient = below.backward(layer.backward_input(gradient))
+        gradient = relu_backward(layer.backward_input(gradient), below.output)
     layers[0].backward(x, gradient)

@@ -11,10 +11,8 @@ from collections.abc import Mapping
 
 import torch
 from torch import Tensor
-from torch.nn.functional import layer_norm
 
 from hexapod_agent.algorithms.ddpg.config import ActorConfig, CriticConfig, DdpgConfig
-from hexapod_agent.algorithms.policies import NORM_EPSILON
 from hexapod_agent.algorithms.replay import Batch
 
 Arrays = dict[str, Tensor]
@@ -26,16 +24,11 @@ def affine(arrays: Arrays, layer: str, x: Tensor) -> Tensor:
     return x @ arrays[f'{layer}.weight'].T + arrays[f'{layer}.bias']
 
 
-def activate(x: Tensor, normalize: bool) -> Tensor:
-    """Return the ReLU of x, or of its rows normalised to mean 0 and variance 1."""
-    return (layer_norm(x, x.shape[-1:], eps=NORM_EPSILON) if normalize else x).relu()
-
-
 def preactivation(arrays: Arrays, config: ActorConfig, observation: Tensor) -> Tensor:
     """Return z, of which the policy is mu(s) = tanh z."""
     x = observation
     for number in range(len(config.hidden)):
-        x = activate(affine(arrays, f'hidden{number}', x), config.layer_norm)
+        x = affine(arrays, f'hidden{number}', x).relu()
     return affine(arrays, 'output', x)
 
 
@@ -46,10 +39,10 @@ def action_value(
     x = observation
     *below, last = range(len(config.hidden))
     for number in below:
-        x = activate(affine(arrays, f'observation{number}', x), config.layer_norm)
+        x = affine(arrays, f'observation{number}', x).relu()
     branches = affine(arrays, f'observation{last}', x), affine(arrays, 'action', action)
     merged = branches[0] + branches[1] if config.merge == 'add' else torch.cat(branches, dim=-1)
-    return affine(arrays, 'output', activate(merged, config.layer_norm))
+    return affine(arrays, 'output', merged.relu())
 
 
 class ClippedStep:
@@ -73,10 +66,10 @@ class ClippedStep:
 
 
 class ReferenceDdpg:
-    """Actor, critics and targets of one agent.
+    """Actor, critic and targets of one agent.
 
     Attributes:
-        networks: Arrays by network: actor, critic and, if there are two, twin_critic.
+        networks: Arrays by network, actor and critic.
         targets: The same of the networks that follow them.
     """
 
@@ -91,7 +84,6 @@ class ReferenceDdpg:
         self._smoothing = config.ddpg.target_smoothing
         self.networks = {name: _copied(arrays, learned=True) for name, arrays in networks.items()}
         self.targets = {name: _copied(arrays, learned=False) for name, arrays in targets.items()}
-        self._critics = [name for name in self.networks if name != 'actor']
         self._steps = {
             name: ClippedStep(arrays, config.actor if name == 'actor' else config.critic)
             for name, arrays in self.networks.items()
@@ -99,30 +91,25 @@ class ReferenceDdpg:
 
     def update(self, batch: Batch) -> tuple[float, float, float]:
         """Take one gradient step from a batch (batch, ...); return what `METRICS` names."""
-        critic_loss = self._update_critics(batch)
+        critic_loss = self._update_critic(batch)
         actor_loss, mean_q = self._update_actor(batch.observation)
         for name, target in self.targets.items():
             for key, array in target.items():
                 array.lerp_(self.networks[name][key].detach(), self._smoothing)
         return critic_loss, actor_loss, mean_q
 
-    def _update_critics(self, batch: Batch) -> float:
-        """Move every Q(s, a) towards y = r + bootstrap min Q'(s', mu'(s'))."""
+    def _update_critic(self, batch: Batch) -> float:
+        """Move Q(s, a) towards y = r + bootstrap Q'(s', mu'(s'))."""
         with torch.no_grad():
             following = batch.next_observation
             action = preactivation(self.targets['actor'], self._actor, following).tanh()
-            values = [
-                action_value(self.targets[name], self._critic, following, action)
-                for name in self._critics
-            ]
-            wanted = batch.reward + batch.bootstrap * torch.stack(values).amin(dim=0)
-        losses = []
-        for name in self._critics:
-            arrays = self.networks[name]
-            value = action_value(arrays, self._critic, batch.observation, batch.action)
-            losses.append((value - wanted).square().mean())
-            self._steps[name].take(losses[-1])
-        return torch.stack(losses).mean().item()
+            value = action_value(self.targets['critic'], self._critic, following, action)
+            wanted = batch.reward + batch.bootstrap * value
+        arrays = self.networks['critic']
+        value = action_value(arrays, self._critic, batch.observation, batch.action)
+        loss = (value - wanted).square().mean()
+        self._steps['critic'].take(loss)
+        return loss.item()
 
     def _update_actor(self, observation: Tensor) -> tuple[float, float]:
         """Move mu(s) up the slope of Q(s, mu(s)) under the critic that was just updated."""

@@ -67,9 +67,8 @@ class DdpgStack(LearnerStack[DdpgLearner]):
         self, members: Mapping[int, tuple[DdpgLearner, NDArray[np.float32]]]
     ) -> dict[int, NDArray[np.float32]]:
         """Compute all policies in one pass, and let each learner add its noise."""
-        for slot, (learner, observation) in members.items():
-            inputs = learner.scale.scaled(observation) if learner.scale else observation
-            self._observations[slot, : observation.size].copy_(torch.from_numpy(inputs))
+        for slot, (_, observation) in members.items():
+            self._observations[slot, : observation.size].copy_(torch.from_numpy(observation))
         observations = self._observations.to(self._device, non_blocking=True)
         outputs = self._networks.act(observations).cpu().numpy()
         return {slot: learner.explore(outputs[slot]) for slot, (learner, _) in members.items()}

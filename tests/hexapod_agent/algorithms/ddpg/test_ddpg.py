@@ -18,10 +18,7 @@ BATCH = 16
 
 def config_of(batch: int = BATCH, rate: float = 1e-2, critic: dict | None = None, **actor):
     """The learner's section with every switch off, but for those given."""
-    common = {
-        'hidden': [20, 10], 'learning_rate': rate, 'l2': 0.0, 'gradient_threshold': 1e6,
-        'layer_norm': False,
-    }  # fmt: skip
+    common = {'hidden': [20, 10], 'learning_rate': rate, 'l2': 0.0, 'gradient_threshold': 1e6}
     off = {'preactivation_penalty': 0.0, 'normalize_loss': False}
     sections = {
         'actor': common | off | actor,
@@ -58,24 +55,20 @@ def fill(agent: Ddpg, agents: int = 1, seed: int = 0) -> Batch:
 
 def arrays_of(agent: Ddpg, target: bool) -> dict[str, dict[str, torch.Tensor]]:
     """Arrays of a stack of one by network, of the targets or of what they follow."""
-    layouts = {'actor': agent.actor_parameters} | dict.fromkeys(
-        ('critic', 'twin_critic'), agent.critic_parameters
-    )
+    layouts = {'actor': agent.actor_parameters, 'critic': agent.critic_parameters}
+    state, prefix = agent.state_dict(), 'target_' if target else ''
     return {
-        name: {
-            key: array[0] for key, array in with_numbers(layout, agent.state_dict()[part]).items()
-        }
+        name: {key: each[0] for key, each in with_numbers(layout, state[prefix + name]).items()}
         for name, layout in layouts.items()
-        if (part := f'target_{name}' if target else name) in agent.state_dict()
     }
 
 
 SWITCHES = {
     'none': ({}, {}),
-    'loss': ({'preactivation_penalty': 0.02, 'normalize_loss': True}, {'twin': True}),
-    'norm': ({'layer_norm': True, 'l2': 1e-2}, {'layer_norm': True, 'merge': 'append'}),
+    'loss': ({'preactivation_penalty': 0.02, 'normalize_loss': True}, {}),
+    'append': ({'l2': 1e-2}, {'merge': 'append'}),
     'clip': ({'gradient_threshold': 1e-2}, {'gradient_threshold': 0.1, 'l2': 1e-2}),
-    'deep': ({'hidden': (20, 12, 10)}, {'hidden': (16,), 'twin': True, 'initial_value': 2.0}),
+    'deep': ({'hidden': (20, 12, 10)}, {'hidden': (16,), 'initial_value': 2.0}),
 }
 
 
@@ -86,7 +79,6 @@ def test_updates_are_those_of_the_reference(switches):
     batch = fill(agent).inner(0)
     config = config_of(critic=critic, **actor)
     reference = ReferenceDdpg(config, *(arrays_of(agent, target) for target in (False, True)))
-    assert ('twin_critic' in reference.networks) == critic.get('twin', False)
     for _ in range(3):
         seen = [each.item() for each in agent.update(batch)]
         assert seen == pytest.approx(reference.update(batch), rel=1e-7)
@@ -231,18 +223,10 @@ def test_denormal_numbers_survive_outside_an_update(fails, monkeypatch):
     assert torch.tensor(1e-310, dtype=torch.float64) * 0.5 > 0
 
 
-def test_the_policy_in_numpy_is_the_actor(make_trainer, switched_config):
-    """With normalised layers; without them an exported policy is held against it, too."""
-    trainer = make_trainer(config=switched_config)
-    trainer.learner.networks.actor_parameters.flat.mul_(8.0)
-    scale = trainer.learner.scale
-    generator = np.random.default_rng(0)
-    for _ in range(5):
-        scale.add(generator.uniform(-1.0, 1.0, trainer.spec.size).astype(np.float32))
-    scale.refresh()
+def test_the_policy_in_numpy_is_the_actor(make_trainer):
+    trainer = make_trainer()
+    networks = trainer.learner.networks
+    networks.actor_parameters.flat.mul_(8.0)
     observation = np.linspace(-1.0, 1.0, trainer.spec.size, dtype=np.float32)
-    action = trainer.learner.act(observation, explore=False)
-    inputs = torch.from_numpy(observation)[None].clone()
-    scale.scale(inputs)
-    assert not np.allclose(inputs[0], observation)
-    torch.testing.assert_close(trainer.learner.networks.act(inputs)[0], torch.from_numpy(action))
+    action = torch.from_numpy(trainer.learner.act(observation, explore=False))
+    torch.testing.assert_close(networks.act(torch.from_numpy(observation)[None])[0], action)

@@ -10,7 +10,6 @@ from hexapod_agent.algorithms.ddpg.parameters import ParameterStack
 
 OBSERVATION, ACTION, HIDDEN, BATCH = 7, 4, (12, 9), 6
 STACKS = pytest.mark.parametrize('agents', [1, 3])
-NORMS = pytest.mark.parametrize('norm', [False, True])
 MERGES = pytest.mark.parametrize('merge', ['add', 'append'])
 
 
@@ -40,25 +39,19 @@ def reference_affine(arrays, name: str, x: torch.Tensor) -> torch.Tensor:
     return torch.einsum('abi,aoi->abo', x, weight) + bias.unsqueeze(1)
 
 
-def reference_activation(x: torch.Tensor, norm: bool) -> torch.Tensor:
-    return (torch.nn.functional.layer_norm(x, x.shape[-1:]) if norm else x).relu()
-
-
-def reference_actor(
-    arrays, observation: torch.Tensor, norm: bool
-) -> tuple[torch.Tensor, torch.Tensor]:
-    x = reference_activation(reference_affine(arrays, 'hidden0', observation), norm)
-    x = reference_activation(reference_affine(arrays, 'hidden1', x), norm)
+def reference_actor(arrays, observation: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+    x = reference_affine(arrays, 'hidden0', observation).relu()
+    x = reference_affine(arrays, 'hidden1', x).relu()
     z = reference_affine(arrays, 'output', x)
     return z.tanh(), z
 
 
-def reference_critic(arrays, observation, action, merge: str, norm: bool) -> torch.Tensor:
-    x = reference_activation(reference_affine(arrays, 'observation0', observation), norm)
+def reference_critic(arrays, observation, action, merge: str) -> torch.Tensor:
+    x = reference_affine(arrays, 'observation0', observation).relu()
     x = reference_affine(arrays, 'observation1', x)
     y = reference_affine(arrays, 'action', action)
     merged = torch.cat([x, y], dim=-1) if merge == 'append' else x + y
-    return reference_affine(arrays, 'output', reference_activation(merged, norm))
+    return reference_affine(arrays, 'output', merged.relu())
 
 
 def check_gradients(gradients: ParameterStack, arrays, loss: torch.Tensor) -> None:
@@ -68,11 +61,10 @@ def check_gradients(gradients: ParameterStack, arrays, loss: torch.Tensor) -> No
 
 
 @STACKS
-@NORMS
-def test_actor_gradients_match_autograd(agents, norm):
+def test_actor_gradients_match_autograd(agents):
     parameters = parameter_stack(Actor.shapes(OBSERVATION, ACTION, HIDDEN), agents)
     gradients = parameters.like()
-    actor = Actor(parameters, BATCH, gradients, layer_norm=norm)
+    actor = Actor(parameters, BATCH, gradients)
     observation = draw(agents, BATCH, OBSERVATION)
     action_gradient = draw(agents, BATCH, ACTION, seed=2)
 
@@ -80,18 +72,17 @@ def test_actor_gradients_match_autograd(agents, norm):
     actor.backward(squeezed(action_gradient), 0.7)
 
     arrays = leaves(parameters)
-    expected, z = reference_actor(arrays, observation, norm)
+    expected, z = reference_actor(arrays, observation)
     torch.testing.assert_close(action, squeezed(expected.detach()))
     check_gradients(gradients, arrays, (expected * action_gradient).sum() + 0.35 * (z * z).sum())
 
 
 @STACKS
 @MERGES
-@NORMS
-def test_critic_gradients_match_autograd(agents, merge, norm):
+def test_critic_gradients_match_autograd(agents, merge):
     parameters = parameter_stack(Critic.shapes(OBSERVATION, ACTION, HIDDEN, merge), agents)
     gradients = parameters.like()
-    critic = Critic(parameters, BATCH, gradients, layer_norm=norm)
+    critic = Critic(parameters, BATCH, gradients)
     observation = draw(agents, BATCH, OBSERVATION)
     action = draw(agents, BATCH, ACTION, seed=3)
     value_gradient = draw(agents, BATCH, 1, seed=4)
@@ -102,7 +93,7 @@ def test_critic_gradients_match_autograd(agents, merge, norm):
 
     arrays = leaves(parameters)
     action.requires_grad_()
-    expected = reference_critic(arrays, observation, action, merge, norm)
+    expected = reference_critic(arrays, observation, action, merge)
     torch.testing.assert_close(value, squeezed(expected.detach()))
     check_gradients(gradients, arrays, (expected * value_gradient).sum())
     torch.testing.assert_close(slope, squeezed(action.grad), rtol=1e-10, atol=1e-12)
