@@ -53,7 +53,7 @@ _ROWS = (
 
 
 _MEASURED = ('joint_states', 'joint_torques', 'line_offset')
-_CHANGEABLE = ('scene', 'robot', 'task', 'sensors')
+_CHANGEABLE = ('scene', 'robot', 'task', 'quality', 'sensors')
 """Sections that an agent may meet otherwise than it was trained with."""
 
 

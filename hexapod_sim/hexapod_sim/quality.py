@@ -4,8 +4,11 @@
 """How good a sensor is: six numbers for each channel, all zero for a perfect one."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
-from typing import Annotated
+from dataclasses import asdict, dataclass, replace
+from functools import lru_cache
+from importlib.resources import files
+from types import MappingProxyType
+from typing import Annotated, Literal
 
 import yaml
 from annotated_types import Interval
@@ -54,10 +57,26 @@ class Quality:
         return not any(vars(self).values())
 
 
+Grade = Literal['perfect', 'consumer', 'industrial']
+"""Devices of a kind; sensor_quality.yaml has their numbers."""
 Qualities = Mapping[str, Quality]
 """By key of the sensor table; a channel that is missing is perfect."""
 PERFECT = Quality(**section('sensors', 'each'))
 _QUALITIES: TypeAdapter[dict[str, Quality]] = TypeAdapter(dict[str, Quality])
+
+
+@lru_cache(maxsize=1)
+def grades() -> Mapping[str, dict[str, Quality]]:
+    """Return the qualities of every channel by grade, from sensor_quality.yaml and perfect."""
+    text = (files('hexapod_sim') / 'sensor_quality.yaml').read_text(encoding='utf-8')
+    given = {'perfect': {}} | yaml.safe_load(text)
+    perfect = dict.fromkeys(SENSORS, PERFECT)
+    return MappingProxyType(
+        {
+            grade: perfect | {key: replace(PERFECT, **values) for key, values in channels.items()}
+            for grade, channels in given.items()
+        }
+    )
 
 
 def check(qualities: Qualities) -> None:

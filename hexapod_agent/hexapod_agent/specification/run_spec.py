@@ -14,7 +14,7 @@ from typing import Any
 
 import yaml
 from hexapod_sim.article import ARTICLE, article
-from hexapod_sim.quality import Quality
+from hexapod_sim.quality import Grade, Quality
 from hexapod_sim.quality import check as check_qualities
 from hexapod_sim.scenes.table import SceneConfig, check_walk
 from hexapod_sim.sensor_table import LETTERS, SENSORS
@@ -41,6 +41,7 @@ from hexapod_agent.specification.validation import (
     modern,
     validated,
     with_algorithm,
+    with_grade,
     without_gone,
 )
 
@@ -51,6 +52,7 @@ class RunSpec:
 
     Attributes:
         observations: Whether the agent observes a channel, by its letter in the sensor table.
+        quality: Grade of the devices; what `sensors` says of one goes before it.
         sensors: How good a channel's device is, by its key in the sensor table.
         scene: The ground.
         robot: How the robot varies.
@@ -61,6 +63,7 @@ class RunSpec:
     """
 
     observations: Mapping[str, bool]
+    quality: Grade
     sensors: Mapping[str, Quality]
     scene: SceneConfig
     robot: RobotConfig
@@ -163,8 +166,9 @@ class RunSpec:
             ConfigError: A text is not of this form, a key is unknown, or a value is not allowed.
         """
         spec, sources = self, []
-        algorithm = 'learner.algorithm='  # whose sections are there once it is chosen
-        for setting in sorted(settings, key=lambda each: not each.startswith(algorithm)):
+        # They decide what other keys there are, or what these are where nothing is said of them.
+        first = 'learner.algorithm=', 'quality='
+        for setting in sorted(settings, key=lambda each: not each.startswith(first)):
             sources.append(f'--set {setting}')
             changes = nest(*parsed_setting(setting))
             spec = _built(spec.to_mapping(), changes, sources[-1])
@@ -224,7 +228,7 @@ def _built(base: Mapping[str, Any], changes: Any, source: str) -> RunSpec:
     if isinstance(changes.get('observations'), str):
         chosen = parse_observations(changes['observations'])
         changes['observations'] = {letter: letter in chosen for letter in LETTERS}
-    base = with_algorithm(base, changes, source)
+    base = with_grade(with_algorithm(base, changes, source), changes)
     check_keys(base, changes, source, '')
     values = merged(base, changes)
     learner = validated(

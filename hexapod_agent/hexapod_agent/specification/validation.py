@@ -9,6 +9,7 @@ from functools import cache
 from typing import Any, TypeVar
 
 from hexapod_sim.article import article
+from hexapod_sim.quality import grades
 from pydantic import TypeAdapter, ValidationError
 
 from hexapod_agent.algorithms import ALGORITHMS
@@ -68,6 +69,25 @@ def with_algorithm(
         default: Any = each.default
         sections[each.name] = held[each.name] if each.name in held else asdict(default)
     return {**base, 'learner': sections | {'algorithm': chosen}}
+
+
+def with_grade(base: Mapping[str, Any], changes: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return a base with the sensors of the grade that changes choose.
+
+    Values of the base that differ from its own grade were chosen one by one, and stay.
+    """
+    chosen, known = changes.get('quality'), grades()
+    if not isinstance(chosen, str) or chosen not in known or chosen == base['quality']:
+        return base
+    old, new = known[base['quality']], known[chosen]
+    sensors = {
+        key: {
+            name: vars(new[key])[name] if value == vars(old[key])[name] else value
+            for name, value in values.items()
+        }
+        for key, values in base['sensors'].items()
+    }
+    return {**base, 'quality': chosen, 'sensors': sensors}
 
 
 def modern(changes: Mapping[str, Any]) -> dict[str, Any]:

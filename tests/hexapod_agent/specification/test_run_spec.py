@@ -4,6 +4,7 @@
 """article.yaml is complete, and a wrong file is refused by name, key and expectation."""
 
 from dataclasses import fields
+from importlib.resources import files
 
 import pytest
 import yaml
@@ -53,6 +54,7 @@ def test_sections():
     names = {field.name for field in fields(RunSpec)}
     assert names == {
         'observations',
+        'quality',
         'sensors',
         'scene',
         'robot',
@@ -61,6 +63,45 @@ def test_sections():
         'learner',
         'training',
     }
+
+
+def test_every_value_of_a_grade_has_an_origin():
+    text = (files('hexapod_sim') / 'sensor_quality.yaml').read_text(encoding='utf-8')
+    for line in text.splitlines():
+        key, _, comment = line.partition('#')
+        if key.strip() and not key.rstrip().endswith(':'):
+            assert any(mark in comment for mark in ('[sheet]', '[derived]', '[ours]')), line
+
+
+@pytest.mark.parametrize('grade', quality.grades())
+def test_a_grade_is_what_its_file_says(grade):
+    spec = RunSpec.load(settings=[f'quality={grade}'])
+    assert spec.sensors == quality.grades()[grade]
+    assert any(not each.perfect for each in spec.sensors.values()) == (grade != 'perfect')
+    assert RunSpec.from_text(spec.to_text(), 'a test') == spec
+    assert spec.changed({'quality': 'perfect'}, 'a test') == RunSpec.load()
+
+
+def test_what_is_said_of_a_sensor_goes_before_its_grade():
+    settings = ['sensors.imu_data.noise=0.5', 'quality=consumer']
+    spec = RunSpec.load().with_settings(settings)
+    assert spec.sensors['imu_data'].noise == 0.5
+    assert spec.sensors['imu_data'].bias == quality.grades()['consumer']['imu_data'].bias
+    assert RunSpec.load().with_settings(settings[::-1]) == spec
+    written = RunSpec.from_text('sensors: {imu_data: {noise: 0.5}}\nquality: consumer', 'a test')
+    assert written == spec
+    later = spec.with_settings(['quality=industrial'])
+    assert later.sensors['imu_data'].noise == 0.5
+    assert later.sensors['imu_data'].bias == quality.grades()['industrial']['imu_data'].bias
+
+
+def test_industrial_devices_are_better_than_those_of_consumers():
+    """In every figure that both have; a grade has no worse one than perfect."""
+    consumer, industrial = (quality.grades()[grade] for grade in ('consumer', 'industrial'))
+    for key in ('joint_states', 'joint_torques', 'imu_data_raw', 'body_height', 'foot_force'):
+        for name, better in vars(industrial[key]).items():
+            worse = getattr(consumer[key], name)
+            assert not (better and worse) or better <= worse, (key, name)
 
 
 def test_a_file_changes_what_it_names_and_nothing_else(write):
@@ -81,7 +122,7 @@ def test_mapping_round_trip():
     [
         (
             'ddgp: {}',
-            "unknown key 'ddgp', expected one of observations, sensors, scene, robot, task, cpg",
+            "unknown key 'ddgp', expected one of observations, quality, sensors, scene, robot",
         ),
         (
             'learner: {ddpg: {gamma: 1}}',

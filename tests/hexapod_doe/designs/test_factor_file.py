@@ -17,12 +17,21 @@ from hexapod_doe.designs.plan_file import PlanError, read_plan
 from rich.console import Console
 
 from hexapod_doe import plan
+from hexapod_sim import quality
 
 GOOD = """
 - {name: body orientation, key: observations.C, low: off, high: on, device: IMU}
 - {name: body height, key: observations.E, low: off, high: on}
 - {name: yaw share, key: task.yaw_share, low: 0, high: 1}
 - {name: learning rate, key: learner.actor.learning_rate, low: 1e-4, high: 2.0e-4}
+"""
+
+HARDER = """
+- {name: ground, key: scene.name, low: flat, high: rough}
+- {name: payload, key: robot.payload, low: 0, high: 1.2}
+- {name: body orientation, key: observations.C, low: off, high: on}
+- {name: dead legs, key: robot.dead_legs, low: none, high: lm+rf}
+- {name: devices, key: quality, low: perfect, high: consumer}
 """
 
 
@@ -225,6 +234,22 @@ def test_the_example_plans_eight_factors_in_sixteen_rows(tmp_path, capsys):
     rows = read_rows(out)
     assert len({row.spec.to_text() for row in rows}) == len(rows) == 16
     assert {row.spec.sensors['imu_data'].noise for row in rows} == {0.0, 0.05}
+
+
+def test_grounds_robots_and_grades_of_sensors_are_factors(tmp_path, capsys):
+    out = written(tmp_path, HARDER, '--set', 'scene.roughness=0.03')
+    assert 'A  ground flat → rough  (scene.name)' in capsys.readouterr().out
+    for row in read_rows(out):
+        high = {name: int(row.metadata[name]) > 0 for name in 'ABD'}
+        spec = row.spec
+        assert (spec.scene.name, spec.scene.roughness) == (
+            ('rough' if high['A'] else 'flat'),
+            0.03,
+        )
+        assert spec.robot.payload == (1.2 if high['B'] else 0.0)
+        assert spec.robot.dead_legs == ('lm+rf' if high['D'] else 'none')
+        assert spec.sensors == quality.grades()[spec.quality]
+    assert {row.spec.quality for row in read_rows(out)} == {'perfect', 'consumer'}
 
 
 def test_progress_names_factors_and_levels(tmp_path):
