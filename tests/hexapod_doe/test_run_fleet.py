@@ -19,9 +19,8 @@ from hexapod_agent.learning import run_checkpoint
 from hexapod_agent.learning.training import Trainer, TrainingDivergedError
 from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_agent.train import train_episode
-from hexapod_doe.bags.digest import digest
 from hexapod_doe.bags.run_record import find_bags, read_run
-from hexapod_doe.bags.verify import verify
+from hexapod_doe.bags.verify import digest, verify
 from hexapod_doe.campaigns.campaign import Campaign
 from hexapod_doe.campaigns.campaign_lock import campaign_lock, row_lock
 from hexapod_doe.campaigns.failures import read_failures

@@ -31,7 +31,7 @@ from hexapod_agent.nodes.messages import decode
 from hexapod_agent.specification.run_spec import RunSpec
 from interface_tables import sensor_table
 from hexapod_doe.designs.factor import default_factors
-from hexapod_doe.designs.factor_levels import check_levels
+from hexapod_doe.designs.factor_file import check_levels
 from hexapod_doe.designs.factor import Factor
 from hexapod_sim.fake_device import DEVICES
 from hexapod_sim.nodes.messages import SENSOR_TOPICS

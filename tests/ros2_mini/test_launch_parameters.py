@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 
 import pytest
-from ros2_mini.launch.parameters import parameter_value
+from ros2_mini.launch.expand import parameter_value
 
 
 @pytest.mark.parametrize(

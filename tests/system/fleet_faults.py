@@ -17,7 +17,7 @@ import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from hexapod_doe.bags.digest import digest
+from hexapod_doe.bags.verify import digest
 from hexapod_doe.campaigns.folder import read_progress, verify_done
 from hexapod_doe.campaigns.progress import State
 from hexapod_doe.campaigns.row import Row, read_rows

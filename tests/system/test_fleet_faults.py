@@ -14,8 +14,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from hexapod_doe.bags.digest import digest
 from hexapod_doe.bags.run_record import find_bags
+from hexapod_doe.bags.verify import digest
 
 from .fleet_faults import CONFIG, FAULTS, Victim
 

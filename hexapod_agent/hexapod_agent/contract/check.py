@@ -8,16 +8,13 @@ from collections.abc import Callable, Iterator
 from hexapod_agent.contract import (
     inertial,
     plausibility,
-    presence,
     shape,
     timing,
-    units,
 )
 from hexapod_agent.contract.evidence import Evidence
-from hexapod_agent.contract.finding import Finding
+from hexapod_agent.contract.finding import Finding, Subject
 from hexapod_agent.contract.limits import Limits
 from hexapod_agent.contract.report import SensorReport, TopicRow, topic_row
-from hexapod_agent.contract.subject import Subject
 from hexapod_agent.contract.timing import Clock
 from hexapod_agent.specification.observation import ObservationSpec
 
@@ -28,7 +25,7 @@ _READABLE: tuple[Callable[[Subject], Iterator[Finding]], ...] = (
 )
 _ON_NUMBERS: tuple[Callable[[Subject], Iterator[Finding]], ...] = (
     plausibility.check_motion,
-    units.check_units,
+    plausibility.check_units,
     plausibility.check_range,
     plausibility.check_contacts,
     inertial.check_gravity,
@@ -70,12 +67,12 @@ def check_sensors(
 
 def _check_topic(subject: Subject, clocks: list[Clock]) -> tuple[list[Finding], bool]:
     """Check one topic; return the findings, and whether its numbers could be read."""
-    found = list(presence.check_publishers(subject))
-    if any(finding.kind == presence.MANY_PUBLISHERS for finding in found):
+    found = list(timing.check_publishers(subject))
+    if any(finding.kind == timing.MANY_PUBLISHERS for finding in found):
         return found, False  # what two of them say by turns is no fault of either
     if not subject.samples:
-        return found or list(presence.check_messages(subject)), False
-    found += presence.check_messages(subject)
+        return found or list(timing.check_messages(subject)), False
+    found += timing.check_messages(subject)
     stamps = list(timing.check_stamps(subject))
     found += stamps or timing.check_lag(subject, clocks)
     found += timing.check_pauses(subject, clocks)

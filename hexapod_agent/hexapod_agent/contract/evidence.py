@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from hexapod_sim.channel import Channel
 from hexapod_sim.message_fields import read
 from numpy.typing import NDArray
 
@@ -80,3 +81,31 @@ def sample(message: Any, paths: Iterable[str], arrival_ns: int) -> Sample:
         names=tuple(getattr(message, 'name', ())),
         values={path: read(message, path) for path in paths},
     )
+
+
+ACCELERATION = 'linear_acceleration'
+ACCELERATION_COVARIANCE = 'linear_acceleration_covariance'
+ORIENTATION_COVARIANCE = 'orientation_covariance'
+ANGULAR_VELOCITY_COVARIANCE = 'angular_velocity_covariance'
+# What says of an observed field whether the device gives it at all (REP-145).
+COVARIANCES = {
+    'orientation': ORIENTATION_COVARIANCE,
+    'angular_velocity': ANGULAR_VELOCITY_COVARIANCE,
+}
+RANGE_LIMITS = ('min_range', 'max_range')
+# What the agent does not observe but the check needs to judge what it does.
+_FURTHER = {
+    'sensor_msgs/msg/Imu': (
+        ACCELERATION,
+        ACCELERATION_COVARIANCE,
+        ANGULAR_VELOCITY_COVARIANCE,
+        ORIENTATION_COVARIANCE,
+    ),
+    'sensor_msgs/msg/Range': RANGE_LIMITS,
+}
+
+
+def checked_paths(channel: Channel) -> tuple[str, ...]:
+    """Return the paths of all fields that are taken out of a message to check it."""
+    own = tuple(field.path for field in channel.observed)
+    return own + _FURTHER.get(channel.message_type, ())

@@ -10,14 +10,13 @@ import numpy as np
 from hexapod_sim.robot import GRAVITY
 from numpy.typing import NDArray
 
-from hexapod_agent.contract.fields import (
+from hexapod_agent.contract.evidence import (
     ACCELERATION,
     ACCELERATION_COVARIANCE,
     COVARIANCES,
 )
-from hexapod_agent.contract.finding import Finding
-from hexapod_agent.contract.subject import Subject
-from hexapod_agent.contract.units import conversion, other_unit
+from hexapod_agent.contract.finding import Finding, Subject
+from hexapod_agent.contract.plausibility import conversion, other_unit
 
 _IMU = 'sensor_msgs/msg/Imu'
 # REP-145: the first covariance is -1 where the device does not give the quantity.

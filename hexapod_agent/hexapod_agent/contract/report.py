@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from hexapod_agent.contract.finding import Finding
-from hexapod_agent.contract.subject import Subject
+from hexapod_agent.contract.finding import Finding, Subject
 from hexapod_agent.contract.timing import Clock, clock_of, gaps_s, median_lag_s
 
 

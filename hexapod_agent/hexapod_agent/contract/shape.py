@@ -10,8 +10,7 @@ from hexapod_sim.channel import Field
 from hexapod_sim.joint_names import joint_order
 from hexapod_sim.robot import JOINTS
 
-from hexapod_agent.contract.finding import Finding
-from hexapod_agent.contract.subject import Subject
+from hexapod_agent.contract.finding import Finding, Subject
 
 
 def check_frame(subject: Subject) -> Iterator[Finding]:

@@ -17,17 +17,19 @@ from hexapod_sim.channel import Channel
 from hexapod_sim.joint_names import joint_order
 from hexapod_sim.robot import CONTROL_PERIOD_NS, GRAVITY
 
-from hexapod_agent.contract import inertial, shape, units
-from hexapod_agent.contract.evidence import Evidence, Sample, TopicEvidence, sample
-from hexapod_agent.contract.fields import (
+from hexapod_agent.contract import inertial, plausibility, shape
+from hexapod_agent.contract.evidence import (
     ACCELERATION,
     ACCELERATION_COVARIANCE,
     COVARIANCES,
+    Evidence,
+    Sample,
+    TopicEvidence,
     checked_paths,
+    sample,
 )
-from hexapod_agent.contract.finding import Finding
+from hexapod_agent.contract.finding import Finding, Subject
 from hexapod_agent.contract.limits import Limits
-from hexapod_agent.contract.subject import Subject
 
 # A driver in another unit now and then sends numbers that would do in ours, and an accelerometer
 # of a walking robot points anywhere: a fault of these kinds lasts until a second went well, and
@@ -46,7 +48,7 @@ _IN_ONE_MESSAGE: tuple[_Check, ...] = (
     shape.check_shape,
     inertial.check_given,
     shape.check_finite,
-    units.check_units,
+    plausibility.check_units,
     inertial.check_orientation,
 )
 

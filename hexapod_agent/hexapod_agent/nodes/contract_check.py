@@ -14,8 +14,7 @@ from hexapod_node.raw_topics import message_class
 from hexapod_node.topic_probe import TopicProbe
 
 from hexapod_agent.contract.check import check_sensors
-from hexapod_agent.contract.evidence import Evidence, Offer, TopicEvidence, sample
-from hexapod_agent.contract.fields import checked_paths
+from hexapod_agent.contract.evidence import Evidence, Offer, TopicEvidence, checked_paths, sample
 from hexapod_agent.contract.limits import Limits
 from hexapod_agent.contract.report import SensorReport
 from hexapod_agent.specification.observation import ObservationSpec

@@ -10,8 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import IO, Any, NamedTuple
 
-from hexapod_doe.bags.cdr import decompressed
-from hexapod_doe.bags.decoding import Decoders
+from hexapod_doe.bags.decoding import Decoders, decompressed
 from hexapod_doe.bags.location import CONVERT, located
 from hexapod_doe.bags.mcap_file import (
     Contents,

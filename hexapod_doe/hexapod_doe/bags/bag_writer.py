@@ -20,11 +20,10 @@ from mcap.writer import CompressionType, Writer
 
 from hexapod_doe.bags import rosbag2
 from hexapod_doe.bags.bag_file import BagFile
-from hexapod_doe.bags.digest import Digest
 from hexapod_doe.bags.rosbag2 import METADATA_FILE, ROOT_KEY, Topic, partial_path
 from hexapod_doe.bags.run_bag import DIGEST, RUN_RECORD
 from hexapod_doe.bags.schema import definition, type_hash
-from hexapod_doe.bags.verify import check_messages
+from hexapod_doe.bags.verify import Digest, check_messages
 from hexapod_doe.errors import BagError, LockingError
 from hexapod_doe.file_lock import lock
 

@@ -13,9 +13,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from hexapod_doe.bags.bag_writer import BagWriter
-from hexapod_doe.bags.cdr import stamp_ns
 from hexapod_doe.bags.completeness import EpisodeTally, describe
 from hexapod_doe.bags.cuts import forget_cuts
+from hexapod_doe.bags.decoding import stamp_ns
 from hexapod_doe.bags.rosbag2 import Topic
 from hexapod_doe.bags.run_bag import COMPLETE, RECORDING, evaluation_of, is_evaluation
 from hexapod_doe.bags.schema import is_stamped

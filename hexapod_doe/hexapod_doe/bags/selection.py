@@ -9,7 +9,7 @@ from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, field
 
 from hexapod_doe.bags.bag_file import BagFile, RawMessage
-from hexapod_doe.bags.cdr import is_cdr
+from hexapod_doe.bags.decoding import is_cdr
 from hexapod_doe.bags.definition import departure, is_unproven
 from hexapod_doe.errors import BagError
 

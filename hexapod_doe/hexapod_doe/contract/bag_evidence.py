@@ -7,8 +7,14 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 
-from hexapod_agent.contract.evidence import Evidence, Offer, Sample, TopicEvidence, sample
-from hexapod_agent.contract.fields import checked_paths
+from hexapod_agent.contract.evidence import (
+    Evidence,
+    Offer,
+    Sample,
+    TopicEvidence,
+    checked_paths,
+    sample,
+)
 from hexapod_agent.specification.observation import ObservationSpec
 from hexapod_sim.channel import Channel
 

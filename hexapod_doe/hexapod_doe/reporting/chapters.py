@@ -17,7 +17,6 @@ from hexapod_doe.reporting.figures import (
     predictions,
     purchase,
     residuals,
-    reward_terms,
     significance,
 )
 from hexapod_doe.reporting.figures.chart import Chart
@@ -119,7 +118,7 @@ CHAPTERS = (
         (
             learning.runs_by_case,
             learning.learning_curves,
-            reward_terms.reward_terms,
+            learning.reward_terms,
             tables.runs,
             glossary.glossary,
         ),

@@ -9,12 +9,11 @@ import pytest
 from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_doe.bags.bag_file import BagFile
 from hexapod_doe.bags.carry_over import carry_over, cut_episodes, find_cut
-from hexapod_doe.bags.digest import digest
 from hexapod_doe.bags.recording import Recording
 from hexapod_doe.bags.rosbag2 import Topic
 from hexapod_doe.bags.run_record import read_run
 from hexapod_doe.bags.salvage import set_aside
-from hexapod_doe.bags.verify import verify
+from hexapod_doe.bags.verify import digest, verify
 from hexapod_doe.errors import BagError
 
 PERIOD_NS = 25_000_000

@@ -6,7 +6,7 @@
 import struct
 
 import pytest
-from hexapod_doe.bags.cdr import decompressed, is_cdr, stamp_ns
+from hexapod_doe.bags.decoding import decompressed, is_cdr, stamp_ns
 from zstandard import ZstdCompressor
 
 

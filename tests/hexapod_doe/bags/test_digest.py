@@ -5,8 +5,8 @@
 
 import pytest
 from hexapod_doe.bags.bag_writer import BagWriter
-from hexapod_doe.bags.digest import digest
 from hexapod_doe.bags.rosbag2 import Topic
+from hexapod_doe.bags.verify import digest
 
 
 @pytest.fixture

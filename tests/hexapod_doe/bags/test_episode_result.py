@@ -8,7 +8,7 @@ from array import array
 
 import pytest
 from hexapod_agent.learning.summary import EpisodeSummary
-from hexapod_doe.bags.cdr import stamp_ns
+from hexapod_doe.bags.decoding import stamp_ns
 from hexapod_doe.bags.episode_result import serialise
 
 

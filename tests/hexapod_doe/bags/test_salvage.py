@@ -8,10 +8,10 @@ import sys
 
 import pytest
 from hexapod_doe.bags.bag_writer import BagWriter
-from hexapod_doe.bags.digest import digest
 from hexapod_doe.bags.rosbag2 import partial_path
 from hexapod_doe.bags.run_record import find_bags, is_complete, read_run
 from hexapod_doe.bags.salvage import salvage, set_aside
+from hexapod_doe.bags.verify import digest
 from hexapod_doe.errors import BagError
 from rosbags.highlevel import AnyReader
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from hexapod_doe.bags.bag_file import BagFile
-from hexapod_doe.bags.cdr import is_cdr
+from hexapod_doe.bags.decoding import is_cdr
 from hexapod_doe.bags.selection import Selection, select
 from hexapod_doe.errors import BagError
 

@@ -9,8 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from hexapod_doe.reporting.figures import learning
-from hexapod_doe.reporting.figures.learning import outliers
-from hexapod_doe.reporting.figures.reward_terms import POINTS, reward_terms
+from hexapod_doe.reporting.figures.learning import POINTS, outliers, reward_terms
 from hexapod_doe.reporting.glossary import glossary, meanings
 from hexapod_interfaces.msg import EpisodeResult
 from hexapod_sim.task import TERM_NAMES
