@@ -128,10 +128,16 @@ def _names(runs: Sequence[str]) -> str:
 
 
 def _stated(key: str, found: Mapping[str, str]) -> bool:
-    """Whether a value is known; a configuration is stated as a whole."""
-    if key.split('.')[0] == CONFIG:
-        return any(each.split('.')[0] == CONFIG for each in found)
-    return key in found
+    """Whether a value is known; a configuration is stated as a whole.
+
+    But for a section of the learner of which a run has nothing: its algorithm, which is compared
+    as such, has no such section.
+    """
+    parts = key.split('.')
+    if parts[0] != CONFIG:
+        return key in found
+    section = '.'.join(parts[:3] if parts[1:2] == ['learner'] and len(parts) > 3 else parts[:1])
+    return any(each == section or each.startswith(f'{section}.') for each in found)
 
 
 @lru_cache(maxsize=256)

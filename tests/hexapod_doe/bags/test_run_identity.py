@@ -79,6 +79,21 @@ def test_blocks_by_configuration_cover_all_of_it():
     assert odd_runs(runs, without=['config']) == {}
 
 
+def test_sections_of_a_learner_are_compared_where_both_algorithms_have_them():
+    def learned(algorithm: str, **section: object) -> dict[str, str]:
+        return run(config=text(learner={'algorithm': algorithm, **section}))
+
+    ddpg, td3 = learned('ddpg'), learned('td3')
+    algorithm = 'config.learner.algorithm'
+    assert differences(td3, ddpg) == f'{algorithm} td3, expected ddpg'
+    assert list(odd_runs({'a': td3, 'b': ddpg, 'c': learned('ppo')})) == [algorithm]
+    louder = learned('td3', noise={'sigma': 0.7}, td3={'policy_delay': 3})
+    assert list(odd_runs({'a': louder, 'b': ddpg}, without=[algorithm])) == [
+        'config.learner.noise.sigma'
+    ]
+    assert 'config.learner.td3.policy_delay 3, expected 2' in differences(louder, td3)
+
+
 def test_versions_are_what_a_run_was_made_with():
     assert making({'version.numpy': '2.4.6', 'machine': 'x86_64', 'seed': '3'}) == {
         'version.numpy': '2.4.6',

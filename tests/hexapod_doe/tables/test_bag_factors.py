@@ -110,6 +110,34 @@ def test_responses_are_by_the_set_of_high_levels(campaign: Path) -> None:
     assert {'(none)', 'ABCD'} < set(found)
 
 
+def test_an_algorithm_is_a_factor_like_any_other(tmp_path: Path, write_bag) -> None:
+    factors = tmp_path / 'factors.yaml'
+    factors.write_text(
+        '- {name: algorithm, key: learner.algorithm, low: ddpg, high: sac}\n'
+        '- {name: foot contacts, key: observations.G, low: off, high: on}\n'
+    )
+    out = tmp_path / 'two' / 'plan.csv'
+    swift = ['--set', 'learner.ddpg.update_ratio=0.125']
+    plan.main(['--factors', str(factors), '--design', 'full', *swift, '--out', str(out)])
+    rows = read_rows(out)
+    for row in rows:
+        described = dict(row.metadata) | {'spec': row.spec.to_text()}
+        write_bag(f'two/runs/{row.run_id}', samples=0, gain=10.0 + row.levels[0], **described)
+    (table,) = read_bags([out.parent])
+    assert (len(table.rows), table.caveats) == (4, ())
+    assert {row.spec.learner.algorithm for row in rows} == {'ddpg', 'sac'}
+    for row in rows:
+        assert row.bag_state(whole=True).other == 'episodes 3, expected 1000'
+    # What the runs of one algorithm have in common is held against them as ever.
+    other = next(row for row in rows if row.spec.learner.algorithm == 'ddpg')
+    changed = other.spec.with_value('learner.ddpg.batch_size', 64, 'test').to_text()
+    shutil.rmtree(other.bag)
+    described = dict(other.metadata) | {'spec': changed}
+    write_bag(f'two/runs/{other.run_id}', samples=0, **described)
+    with pytest.raises(TableError, match=r'not alike .*learner\.ddpg\.batch_size 64'):
+        read_bags([out.parent])
+
+
 @pytest.mark.parametrize(
     ('key', 'value', 'message'),
     [
