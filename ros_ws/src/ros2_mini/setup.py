@@ -17,7 +17,7 @@ setup(
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),
     ],
-    install_requires=['PyYAML', 'mcap', 'numpy', 'setuptools'],
+    install_requires=['PyYAML', 'numpy', 'setuptools'],
     extras_require={'test': ['pytest']},
     zip_safe=False,
 )

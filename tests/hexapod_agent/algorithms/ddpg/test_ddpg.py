@@ -8,9 +8,9 @@ import pytest
 import torch
 from hexapod_agent.algorithms.ddpg.ddpg import Ddpg
 from hexapod_agent.algorithms.ddpg.parameters import ParameterStack
-from hexapod_agent.algorithms.ddpg.reference import ReferenceDdpg
 from hexapod_agent.algorithms.replay import Batch
 from hexapod_agent.specification.run_spec import RunSpec
+from reference_ddpg import ReferenceDdpg
 
 SIZES = (5, 3)
 BATCH = 16

@@ -10,10 +10,9 @@ which writes the gradients out, to this.
 from collections.abc import Mapping
 
 import torch
-from torch import Tensor
-
 from hexapod_agent.algorithms.ddpg.config import ActorConfig, CriticConfig, DdpgConfig
 from hexapod_agent.algorithms.replay import Batch
+from torch import Tensor
 
 Arrays = dict[str, Tensor]
 """Weights '<layer>.weight' (outputs, inputs) and biases '<layer>.bias' (outputs,)."""
