@@ -18,7 +18,7 @@ from hexapod_sim.task import EVALUATION_SEED
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.learning import checkpoint
 from hexapod_agent.learning.event_log import EventLog
-from hexapod_agent.learning.numerics import set_numerics
+from hexapod_agent.learning.numerics import check_precision, resolved, set_numerics
 from hexapod_agent.learning.player import Agent
 from hexapod_agent.learning.progress import Report, episode_report
 from hexapod_agent.learning.run_checkpoint import different, listed
@@ -192,10 +192,13 @@ def _trainer(options: argparse.Namespace) -> Trainer:
         trainer = checkpoint.load(file)
         _check_same_run(options, trainer)
         trainer.config = _with_length(trainer.config, options.episodes)
+        check_precision(trainer.config)
         return trainer
     if file.exists():
         raise ConfigError(f'{str(file)!r} exists, expected --resume or another --out')
-    return Trainer(_spec(options), 1 if options.seed is None else options.seed)
+    spec = _spec(options)
+    check_precision(spec)
+    return Trainer(spec, 1 if options.seed is None else options.seed)
 
 
 def _spec(options: argparse.Namespace) -> RunSpec:
@@ -217,7 +220,7 @@ def _check_same_run(options: argparse.Namespace, trainer: Trainer) -> None:
     """
     asked: RunSpec | None = None
     if options.config is not None or options.set:
-        asked = RunSpec.load(options.config, options.set)
+        asked = resolved(RunSpec.load(options.config, options.set))
     if asked is None or not any(asked.observations.values()):  # neither says anything of them
         asked = (asked or trainer.config).observing(trainer.config.letters)
     if options.observations is not None:

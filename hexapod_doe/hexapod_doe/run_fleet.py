@@ -20,6 +20,7 @@ from hexapod_agent.fleet.learners import Learners, SeparateLearners
 from hexapod_agent.fleet.pool import Pool
 from hexapod_agent.fleet.robots import Robots
 from hexapod_agent.fleet.stacked import StackedLearners
+from hexapod_agent.learning.numerics import check_precision
 from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_agent.specification.spec_text import add_spec_options
 from hexapod_sim.command_line import CommandLine, file, folder, one_line, whole
@@ -103,8 +104,11 @@ def _run(args: argparse.Namespace) -> int:
         for run_id, damage in campaign.damaged.items():
             print(f'run_fleet: {run_id} is trained anew: {damage}', file=sys.stderr)
         campaign.check_writable()
-        keep_config(plan.resolve(), campaign.base)
         due = {row.run_id: row.spec for row in campaign.due}
+        if is_cpu(args.device):
+            for spec in due.values():
+                check_precision(spec)
+        keep_config(plan.resolve(), campaign.base)
         processes = args.processes or (_CORES if is_cpu(args.device) else 1)
         if due:
             workers = processes if is_cpu(args.device) else 0

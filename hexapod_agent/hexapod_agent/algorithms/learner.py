@@ -20,7 +20,7 @@ the process computes. A learner sets nothing global of a library; `numerics` doe
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol, TypeVar
+from typing import Any, ClassVar, Protocol, TypeVar
 
 import numpy as np
 from hexapod_sim.task import Outcome
@@ -60,8 +60,10 @@ class LearnerConfig:
 
     Attributes:
         algorithm: Name of a row of `ALGORITHMS`.
+        has_bfloat16: Whether its updates can compute with `training.precision` bfloat16.
     """
 
+    has_bfloat16: ClassVar[bool] = False
     algorithm: str
 
     def check(self) -> None:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from hexapod_agent.algorithms import ALGORITHMS
 from hexapod_agent.algorithms.learner import Metrics, Problem
+from hexapod_agent.learning.numerics import resolved
 from hexapod_agent.learning.player import Player
 from hexapod_agent.learning.summary import EpisodeRecord, EpisodeSummary
 from hexapod_agent.specification.run_spec import ConfigError, RunSpec
@@ -44,6 +45,7 @@ class Trainer:
     """
 
     def __init__(self, config: RunSpec, seed: int) -> None:
+        config = resolved(config)
         self.config, self.seed = config, seed
         self.spec = config.observed
         algorithm = ALGORITHMS[config.learner.algorithm]

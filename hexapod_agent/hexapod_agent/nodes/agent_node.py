@@ -25,6 +25,7 @@ from rclpy.action.server import ServerGoalHandle
 from hexapod_agent.deployment import agent_file
 from hexapod_agent.deployment.agent_file import CheckpointError
 from hexapod_agent.learning import run_checkpoint
+from hexapod_agent.learning.numerics import check_precision, resolved
 from hexapod_agent.learning.player import Agent, Player
 from hexapod_agent.learning.training import Trainer
 from hexapod_agent.nodes.action_names import PLAY_RUN, TRAIN_RUN
@@ -144,7 +145,8 @@ class AgentNode(Node):
                 quote that file, so only this machine is told.
         """
         if not goal.checkpoint:
-            config = RunSpec.from_text(goal.spec, 'spec')
+            config = resolved(RunSpec.from_text(goal.spec, 'spec'))
+            check_precision(config)
             return config, self._resumed(goal, config)
         try:
             return trained(goal)

@@ -43,6 +43,8 @@ class TrainingConfig:
             the machine's fastest product of float32 matrices, which may round the factors
             where the machine has units for that. 'bfloat16' computes hidden layers so; the
             parameters, output layers, losses and optimisers stay float32, and so does acting.
+            'auto' is 'bfloat16' where processor and algorithm compute with it, and 'float32_fast'
+            elsewhere: where a run begins it becomes one of the two.
     """
 
     episodes: Count
@@ -50,4 +52,4 @@ class TrainingConfig:
     evaluation: CountOrNone
     checkpoint_every: Count
     final_rate: Factor
-    precision: Literal['float32', 'float32_fast', 'bfloat16']
+    precision: Literal['float32', 'float32_fast', 'bfloat16', 'auto']

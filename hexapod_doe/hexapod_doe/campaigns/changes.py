@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from hexapod_agent.learning.numerics import resolved
 from hexapod_agent.specification.run_spec import ConfigError, RunSpec
 
 from hexapod_doe.designs.factor import OBSERVATIONS, Treatments
@@ -32,7 +33,7 @@ class Changes:
         return cls(config or None, (*(each for each in settings if each), *length))
 
     def applied(self, treatments: Treatments) -> Treatments:
-        """Return the factors of a plan on top of its base with the changes.
+        """Return the factors of a plan on top of its base with the changes, as it is trained here.
 
         Raises:
             ConfigError: A change is not one, or is of what the plan decides.
@@ -40,6 +41,7 @@ class Changes:
         base = treatments.base if self.config is None else treatments.base.changed_by(self.config)
         base = base.with_settings(self.settings)
         _check_left_alone(base, treatments)
+        base = resolved(base)
         return treatments if base == treatments.base else replace(treatments, base=base)
 
 

@@ -18,6 +18,8 @@ from hexapod_doe.designs.terms import LETTERS
 
 _PER_RUN = ('training.episodes', 'training.evaluation')
 """Keys that a campaign sets for all of its runs."""
+_CHOSEN_WHERE_IT_RUNS = {'training.precision': 'auto'}
+"""Values that become another one, by key."""
 
 
 def check_levels(factor: Factor, base: RunSpec) -> Factor:
@@ -40,6 +42,11 @@ def check_levels(factor: Factor, base: RunSpec) -> Factor:
             kind = 'true or false' if isinstance(found, bool) else f'a value such as {found!r}'
             raise ConfigError(f'{source}: {factor.key} is {quoted(level)}, expected {kind}')
         levels.append(_validated(base, factor.key, level, source))
+        if _CHOSEN_WHERE_IT_RUNS.get(factor.key) == levels[-1]:
+            raise ConfigError(
+                f'{source}: {factor.key} is {level!r}, which becomes what the processor has, '
+                'expected a value that stays'
+            )
     if levels[0] == levels[1]:
         both = f'low and high level of {factor.key} are both {quoted(levels[0])}'
         raise ConfigError(f'{where}: {both}, expected two values')

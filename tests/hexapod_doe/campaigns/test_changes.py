@@ -7,8 +7,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from hexapod_agent.learning import numerics
 from hexapod_agent.specification.run_spec import ConfigError, RunSpec
-from hexapod_doe.bags.run_identity import plan_differences, run_identity
+from hexapod_doe.bags.run_identity import plan_differences, run_identity, spec_key
 from hexapod_doe.campaigns.campaign import Campaign
 from hexapod_doe.campaigns.changes import Changes
 from hexapod_doe.campaigns.plan_copy import CONFIG_FILE, keep_config
@@ -30,6 +31,22 @@ def made(tmp_path) -> Path:
     line = ['--factors', str(tmp_path / 'mine.yaml'), '--design', 'full', '--out', str(out)]
     plan.main([*line, '--set', 'learner.ddpg.n_step=3'])
     return out
+
+
+@pytest.mark.parametrize('precision', ['bfloat16', 'float32_fast'])
+def test_the_rows_of_a_campaign_have_one_precision(made, precision, monkeypatch):
+    """A bag of another host's is another run, and no row mixes in without a word."""
+    monkeypatch.setattr(numerics, 'computes_bfloat16', lambda: precision == 'bfloat16')
+    rows = read_rows(made, Changes.of(None, ['training.precision=auto'], None))
+    assert {row.spec.training.precision for row in rows} == {precision}
+    assert {row.expected[spec_key('training.precision')] for row in rows} == {precision}
+
+
+def test_bfloat16_is_refused_before_a_fleet_begins(made, monkeypatch, capsys):
+    monkeypatch.setattr(numerics, 'computes_bfloat16', lambda: False)
+    assert run_fleet.main(['--plan', str(made), '--set', 'training.precision=bfloat16']) == 2
+    assert "training.precision is 'bfloat16', for which this" in capsys.readouterr().err
+    assert not (made.parent / CONFIG_FILE).exists()
 
 
 def test_a_row_is_the_changed_base_with_its_levels(made):

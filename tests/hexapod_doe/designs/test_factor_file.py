@@ -125,6 +125,10 @@ OTHER = '\n- {name: b, key: task.height_weight, low: 0, high: 1}'
             "factor 'a': high level: task.yaw_share is True, expected a value such as 1.0",
         ),
         (
+            '- {name: a, key: training.precision, low: float32, high: auto}' + OTHER,
+            "factor 'a': high level: training.precision is 'auto', which becomes what the",
+        ),
+        (
             '- {name: a, key: observations.A, low: 0, high: 1}' + OTHER,
             "factor 'a': low level: observations.A is 0, expected true or false",
         ),

@@ -108,6 +108,7 @@ class DdpgConfig(LearnerConfig):
         noise: Exploration.
     """
 
+    has_bfloat16 = True
     actor: ActorConfig
     critic: CriticConfig
     ddpg: UpdateConfig
