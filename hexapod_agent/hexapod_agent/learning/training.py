@@ -64,7 +64,7 @@ class Trainer:
         """Share of the learning rates at which this episode learns."""
         training = self.config.training
         progress = min(self.episode / max(training.episodes - 1, 1), 1.0)
-        return 1.0 - (1.0 - training.final_rate) * progress
+        return float(training.final_rate**progress)
 
     @property
     def average_return(self) -> float:

@@ -9,7 +9,7 @@ from typing import Literal
 from hexapod_cpg.mapping import ActionRanges
 from hexapod_cpg.oscillator import HopfConfig
 
-from hexapod_agent.algorithms.ranges import Count, CountOrNone, Factor
+from hexapod_agent.algorithms.ranges import Count, CountOrNone, PositiveFactor
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class TrainingConfig:
             starts that are the same for every run; 0 for none.
         checkpoint_every: Episodes between two checkpoints.
         final_rate: Share of both learning rates that is left at the last of `episodes`, towards
-            which they fall by the same amount after each; it lasts in episodes after that.
+            which they fall by the same factor after each; it lasts in episodes after that.
         precision: Arithmetic of an update. 'float32' is torch's default. 'float32_fast' takes
             the machine's fastest product of float32 matrices, which may round the factors
             where the machine has units for that. 'bfloat16' computes hidden layers so; the
@@ -51,5 +51,5 @@ class TrainingConfig:
     window: Count
     evaluation: CountOrNone
     checkpoint_every: Count
-    final_rate: Factor
+    final_rate: PositiveFactor
     precision: Literal['float32', 'float32_fast', 'bfloat16', 'auto']

@@ -159,7 +159,7 @@ def test_mapping_round_trip():
             'learner: {ddpg: {discount: 1.5}}',
             'learner.ddpg.discount is 1.5, expected.*or equal to 1',
         ),
-        ('training: {final_rate: -1}', 'training.final_rate is -1, expected.*or equal to 0'),
+        ('training: {final_rate: -1}', 'training.final_rate is -1, expected.*greater than 0'),
         (
             'learner: {critic: {merge: multiply}}',
             "learner.critic.merge is 'multiply', expected.*'add' or 'append'",
