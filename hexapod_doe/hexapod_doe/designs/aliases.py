@@ -17,6 +17,7 @@ from hexapod_doe.designs.design import Design
 from hexapod_doe.designs.terms import (
     LETTERS,
     column,
+    independent_columns,
     model_matrix,
     normalise,
     sort_key,
@@ -111,16 +112,7 @@ def estimable(levels: np.ndarray, factors: str, terms: Sequence[str]) -> list[st
     depend on several others without being equal to any.
     """
     basis = np.ones((len(levels), 1)) / np.sqrt(len(levels))
-    kept = []
-    for term in terms:
-        values = column(levels, factors, term)
-        residual = values - basis @ (basis.T @ values)
-        residual -= basis @ (basis.T @ residual)  # a second pass keeps the basis orthogonal
-        length = np.linalg.norm(residual)
-        if length > 1e-8 * np.sqrt(len(levels)):
-            basis = np.column_stack([basis, residual / length])
-            kept.append(term)
-    return kept
+    return [terms[i] for i in independent_columns(model_matrix(levels, factors, terms), basis)]
 
 
 def rank(levels: np.ndarray, factors: str, terms: Iterable[str]) -> int:

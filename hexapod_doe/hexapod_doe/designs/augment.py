@@ -4,7 +4,6 @@
 """More cases for a design that has been run: foldover, semifold, D-optimal augmentation."""
 
 from collections.abc import Sequence
-from itertools import product as cartesian
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from hexapod_doe.designs.aliases import estimable, representatives
 from hexapod_doe.designs.terms import (
     CONSTANT,
     column,
+    corners,
     model_matrix,
     normalise,
     sort_key,
@@ -61,11 +61,6 @@ def semifold(levels: np.ndarray, factors: str, on: str, keep: str) -> np.ndarray
     return foldover(levels[chosen], factors, on)
 
 
-def corners(factors: str) -> np.ndarray:
-    """Return all 2^k corners in standard order, the first factor fastest. Shape: (2^k, k)."""
-    return np.array(list(cartesian((-1, 1), repeat=len(factors))))[:, ::-1]
-
-
 def d_optimal(
     levels: np.ndarray,
     factors: str,
@@ -96,7 +91,7 @@ def d_optimal(
     if extra < 1:
         raise ValueError(f'{extra} extra cases: expected at least 1')
     model = [CONSTANT, *(terms_up_to(factors, 2) if terms is None else terms)]
-    candidates = corners(factors)
+    candidates = corners(len(factors))
     rows = model_matrix(candidates, factors, model)
     fixed = model_matrix(levels, factors, model)
     base = fixed.T @ fixed + _RIDGE * np.eye(len(model))

@@ -11,7 +11,7 @@ from itertools import combinations
 import numpy as np
 
 from hexapod_doe.designs.catalogue import catalogue_generators
-from hexapod_doe.designs.terms import LETTERS, letters_on, product, sort_key
+from hexapod_doe.designs.terms import LETTERS, corners, letters_on, product, sort_key
 
 MIN_FACTORS, MAX_FACTORS = 2, len(LETTERS)
 FRACTIONS = {'full': 0, 'half': 1, 'quarter': 2, 'eighth': 3, 'sixteenth': 4}
@@ -48,8 +48,7 @@ class Design:
     @cached_property
     def levels(self) -> np.ndarray:
         """The coded levels, -1 and +1. Shape: (cases, factors)."""
-        cases = np.arange(2 ** len(self.base))
-        columns = {letter: 2 * (cases >> bit & 1) - 1 for bit, letter in enumerate(self.base)}
+        columns = dict(zip(self.base, corners(len(self.base)).T, strict=True))
         for factor, word in self.generators.items():
             sign = -1 if word.startswith('-') else 1
             columns[factor] = sign * np.prod(

@@ -17,6 +17,9 @@ CURVATURE = 'curvature'
 LETTERS = 'ABCDEFGHJKLMNOP'
 """Factor names for 2 to 15 factors; `I` is left out because it names the identity."""
 
+_TOLERANCE = 1e-9
+"""What is left of a column, over its length, below which others explain it."""
+
 
 def letters(term: str) -> str:
     """Return the factors that a term multiplies; none for the constant and for curvature."""
@@ -105,9 +108,35 @@ def column(levels: np.ndarray, factors: str, term: str) -> np.ndarray:
     return np.prod(np.asarray(levels, dtype=float)[..., indices], axis=-1)
 
 
+def corners(factors: int) -> np.ndarray:
+    """Return all 2^k corners, the first factor changing fastest (Yates). Shape: (2^k, k)."""
+    runs = np.arange(2**factors)
+    return np.stack([2 * (runs >> bit & 1) - 1 for bit in range(factors)], axis=-1)
+
+
 def model_matrix(levels: np.ndarray, factors: str, terms: Sequence[str]) -> np.ndarray:
     """Return the columns of several terms side by side. Shape: (..., len(terms))."""
     return np.stack([column(levels, factors, term) for term in terms], axis=-1)
+
+
+def independent_columns(columns: np.ndarray, basis: np.ndarray) -> list[int]:
+    """Return which columns, taken in order, those before them and a basis don't explain.
+
+    Args:
+        columns: The columns (n, p).
+        basis: Orthonormal columns that come before all of them (n, b).
+    """
+    kept = []
+    for index, vector in enumerate(columns.T):
+        if basis.shape[1] == len(columns):
+            break
+        rest = vector - basis @ (basis.T @ vector)
+        rest -= basis @ (basis.T @ rest)  # a second pass keeps the basis orthogonal
+        length = np.linalg.norm(rest)
+        if length > _TOLERANCE * max(1.0, float(np.linalg.norm(vector))):
+            basis = np.column_stack([basis, rest / length])
+            kept.append(index)
+    return kept
 
 
 def letters_on(row: Iterable[float], factors: str) -> str:

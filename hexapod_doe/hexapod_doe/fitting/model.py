@@ -18,6 +18,7 @@ from hexapod_doe.designs.aliases import alias_text
 from hexapod_doe.designs.terms import (
     CONSTANT,
     CURVATURE,
+    independent_columns,
     is_interaction,
     letters_on,
     normalise,
@@ -30,7 +31,6 @@ from hexapod_doe.fitting.blocks import no_blocks
 
 EMPTY_SET = '(none)'
 CENTRE = 'centre'
-_TOLERANCE = 1e-9
 
 
 class AliasedTermsError(AnalysisError):
@@ -73,8 +73,7 @@ def model_matrix(levels: pd.DataFrame, terms: Iterable[str]) -> np.ndarray:
 
 def corners(factors: Sequence[str]) -> pd.DataFrame:
     """Return all 2^k combinations in Yates order: the first factor changes fastest."""
-    runs = np.arange(2 ** len(factors))
-    return pd.DataFrame({name: 2 * (runs >> bit & 1) - 1 for bit, name in enumerate(factors)})
+    return pd.DataFrame(words.corners(len(factors)), columns=list(factors))
 
 
 def labels(levels: pd.DataFrame) -> list[str]:
@@ -104,18 +103,7 @@ def independent_terms(
     if blocks is None or blocks.shape[1] == 0:
         levels = levels.drop_duplicates()  # runs of one case say nothing new
         blocks = no_blocks(len(levels))
-    columns, basis = model_matrix(levels, terms), blocks
-    kept = []
-    for term, vector in zip(terms, columns.T, strict=True):
-        if basis.shape[1] == len(columns):
-            break
-        rest = vector - basis @ (basis.T @ vector)
-        rest -= basis @ (basis.T @ rest)  # a second pass keeps the basis orthogonal
-        length = np.linalg.norm(rest)
-        if length > _TOLERANCE * max(1.0, float(np.linalg.norm(vector))):
-            basis = np.column_stack([basis, rest / length])
-            kept.append(term)
-    return tuple(kept)
+    return tuple(terms[i] for i in independent_columns(model_matrix(levels, terms), blocks))
 
 
 def explain_dependent(levels: pd.DataFrame, terms: Sequence[str]) -> dict[str, tuple[str, ...]]:

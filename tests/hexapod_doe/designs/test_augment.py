@@ -11,14 +11,13 @@ import pytest
 from hexapod_doe.designs.aliases import alias_sets, defining_words, estimable, rank, resolution
 from hexapod_doe.designs.augment import (
     aimed_model,
-    corners,
     d_optimal,
     foldover,
     semifold,
     variance_ratios,
 )
 from hexapod_doe.designs.design import fraction, from_generators
-from hexapod_doe.designs.terms import CONSTANT, terms_up_to
+from hexapod_doe.designs.terms import CONSTANT, corners, terms_up_to
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -127,7 +126,7 @@ def test_d_optimal_cases_never_hurt_and_repeat_with_the_seed(extra, seed):
 
 
 def test_corners_are_the_full_factorial_in_standard_order():
-    assert np.array_equal(corners('ABCD'), fraction('full', 4).levels)
+    assert np.array_equal(corners(4), fraction('full', 4).levels)
 
 
 @pytest.mark.parametrize(

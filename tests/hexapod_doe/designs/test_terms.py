@@ -33,7 +33,7 @@ def test_products_form_an_abelian_group_in_which_each_word_is_its_own_inverse(a,
 
 @given(words, words)
 def test_the_column_of_a_product_is_the_product_of_columns(a, b):
-    levels = corners('ABCDEFG')
+    levels = corners(len('ABCDEFG'))
     both = column(levels, 'ABCDEFG', a) * column(levels, 'ABCDEFG', b)
     assert np.array_equal(column(levels, 'ABCDEFG', product(a, b)), both)
 
