@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -e -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help setup other-ros demo check test test-slow lint type format study bench bench-learner film clean clean-demo
+.PHONY: help setup other-ros demo check test test-slow lint type format study answer bench bench-learner film clean clean-demo
 
 VENV ?= .venv
 PACKAGES := hexapod_sim hexapod_cpg hexapod_agent hexapod_doe
@@ -54,6 +54,9 @@ demo: setup  ## run a small real campaign through the graph, to a report
 
 study: setup  ## run what is missing of the published study, hours of it; the estimate comes first
 	@$(ENTER); python -m hexapod_doe.studies.run_study $(STUDY)
+
+answer: setup  ## rebuild every figure and number of the study from its bags
+	@$(ENTER); python -m hexapod_doe.studies.answer $(STUDY) --out docs
 
 test: setup  ## run the tests, without the proofs that take minutes each
 	@$(ENTER); python -m pytest -m 'not slow' $(PYTEST)

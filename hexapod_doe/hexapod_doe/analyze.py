@@ -71,6 +71,8 @@ def summary(analysis: Analysis) -> str:
     chosen = next(p.levels for p in analysis.predictions if p.label == analysis.choice)
     levels = '' if analysis.design.sensors else f' = {set_text(analysis.design, chosen)}'
     lines.append(f'choice: {analysis.choice}{levels} ({analysis.choice_rule})')
+    if analysis.expected_loss is not None:
+        lines.append(f'expected loss of this choice: {analysis.expected_loss:.3g}')
     return '\n'.join(lines)
 
 

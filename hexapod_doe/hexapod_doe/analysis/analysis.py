@@ -11,7 +11,7 @@ import numpy as np
 from hexapod_doe.analysis.describe import design_caveats, model_caveats, scoring_caveats, summarise
 from hexapod_doe.bags.run_identity import differences
 from hexapod_doe.choosing.attribution import alias_safe
-from hexapod_doe.choosing.choice import Failures, model_failures
+from hexapod_doe.choosing.choice import Failures, expected_loss, model_failures
 from hexapod_doe.choosing.conclusions import conclude
 from hexapod_doe.choosing.confirm import confirm
 from hexapod_doe.choosing.estimate import estimates
@@ -97,6 +97,7 @@ def _analyse(
         table=base.table.assign(failed=False if failures is None else failures.failed),
         choice=outlook.ranking[0],
         choice_rule=outlook.choice_rule,
+        expected_loss=expected_loss(outlook, options.seed),
         two_part=None if failures is None else failures.record,
         estimands=estimates(table, options.level),
         **conclude(table, outlook, options, rng),

@@ -151,8 +151,30 @@ def average(
         decide: As `spread`, for the order of the combinations; None for the same.
     """
     space = ModelSpace(levels, response, blocks)
-    grid = corners(list(levels.columns))
-    points = model_matrix(grid, [CONSTANT, *space.terms])
+    visited, eta = _sample(space, rng)
+    eta = eta + _block_error(levels, response, blocks, len(eta), rng)
+    values = spread(eta)
+    ordered = (values if decide is None else decide(eta)).mean(axis=0)
+    names = labels(corners(list(levels.columns)))
+    return _summarise(space, visited, values, ordered, names, level)
+
+
+def predictor_draws(
+    levels: pd.DataFrame,
+    response: np.ndarray,
+    rng: np.random.Generator,
+    blocks: np.ndarray | None = None,
+) -> np.ndarray:
+    """Draw the linear predictor of all combinations over the models (draws, 2^k).
+
+    What all combinations share, the error of the mean over blocks, is left out.
+    """
+    return _sample(ModelSpace(levels, response, blocks), rng)[1]
+
+
+def _sample(space: ModelSpace, rng: np.random.Generator) -> tuple[Counter[bytes], np.ndarray]:
+    """Return how often each model was visited, and a draw of the linear predictor by each."""
+    points = model_matrix(corners(list(space.factors)), [CONSTANT, *space.terms])
     visited: Counter[bytes] = Counter()
     draws = []
     active = np.zeros(len(space.terms), dtype=bool)
@@ -161,10 +183,7 @@ def average(
         if sweep >= BURN_IN:
             visited[active.tobytes()] += 1
             draws.append(_draw(space, active, points, rng))
-    eta = np.array(draws) + _block_error(levels, response, blocks, len(draws), rng)
-    values = spread(eta)
-    ordered = (values if decide is None else decide(eta)).mean(axis=0)
-    return _summarise(space, visited, values, ordered, labels(grid), level)
+    return visited, np.array(draws)
 
 
 def _absorbed(levels: pd.DataFrame, blocks: np.ndarray) -> np.ndarray:

@@ -3,13 +3,15 @@
 
 """The recommended combination, by the two-part model where runs failed, and its record.
 
-`decide` finds the choice alone, as a small part of the whole analysis.
+`decide` finds the choice alone, as a small part of the whole analysis; `expected_loss` says what
+it may cost.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
+from hexapod_doe.choosing.averaging import predictor_draws
 from hexapod_doe.choosing.draws import draw_count, interval_of
 from hexapod_doe.choosing.failure import Threshold, failure_threshold
 from hexapod_doe.choosing.outlook import Outlook, final_outlook, two_part_outlook
@@ -66,6 +68,31 @@ def decide(table: RunTable, options: Options) -> Outlook:
     if found is not None:
         return two_part_outlook(found.selected, found.stated, rng)
     return final_outlook(run(table, options.as_article() if options.article else options), rng)
+
+
+def expected_loss(outlook: Outlook, seed: int) -> float | None:
+    """Return the reward that the choice is expected to lose against the best combination.
+
+    The mean over draws of how far the choice lies below the best of the same draw, in units of
+    the response; the larger one of two kinds of draws. Those of the model before selection know
+    of small effects, which selection takes for none, and those averaged over models of the other
+    names that confounded effects may have. The draws of the selected model, which the order of
+    the combinations comes from, say several times too little (docs/statistics.md).
+
+    Args:
+        outlook: What the choice is made from.
+        seed: Of the draws.
+
+    Returns:
+        None where the model leaves no error.
+    """
+    if outlook.stated is None:
+        return None
+    rng = np.random.default_rng(seed)
+    eta = predictor_draws(outlook.levels, outlook.response, rng, outlook.blocks)
+    chosen = outlook.labels.index(outlook.ranking[0])
+    kinds = (outlook.stated.draws, outlook.spread(eta))
+    return max(float((np.nanmax(each, axis=1) - each[:, chosen]).mean()) for each in kinds)
 
 
 def _both_parts(table: RunTable, options: Options) -> _BothParts | None:

@@ -214,6 +214,8 @@ class Analysis:
     """Label of the recommended combination."""
     choice_rule: str
     """Why that one, in a sentence."""
+    expected_loss: float | None = None
+    """What it is expected to lose against the best combination; None without an error."""
     estimands: tuple[EstimandResult, ...] = ()
     two_part: TwoPart | None = None
     rank_uncertainty: RankUncertainty | None = None

@@ -197,7 +197,8 @@ def _certainty(analysis: Analysis, best: Standing) -> Fact:
     if ranks is not None and not all_alike(standings(analysis)):
         first = ranks.p_best.get(best.label)
         top = ranks.p_top3.get(best.label)
-        return Fact('chance to be the best set', chance(first), f'in the top 3: {chance(top)}')
+        note = f'in the top 3: {chance(top)}; expected loss {number(analysis.expected_loss)}'
+        return Fact('chance to be the best set', chance(first), note)
     rivals = sum(
         best.ci[0] is not None and p.ci[1] is not None and p.ci[1] >= best.ci[0]
         for p in standings(analysis)
