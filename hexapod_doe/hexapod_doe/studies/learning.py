@@ -10,6 +10,8 @@ baselines, and leaves table.csv and curves.png. What a directory already holds i
 """
 
 import json
+import math
+import os
 import subprocess
 import sys
 from collections.abc import Iterable, Sequence
@@ -19,7 +21,7 @@ from pathlib import Path
 
 import matplotlib as mpl
 import pandas as pd
-from hexapod_agent.train import AGENT, CHECKPOINT, LOG
+from hexapod_agent.train import AGENT, CHECKPOINT, EVALUATION, LOG
 from hexapod_sim.command_line import CommandLine, file, folder, whole
 from matplotlib.axes import Axes
 
@@ -37,6 +39,9 @@ COLUMNS = (
     'falls',
     'energy_per_metre',
 )
+RUN_COLUMNS = ('evaluation_return', 'processor_seconds')
+PROCESSOR = 'processor.json'
+"""Processor time of each command that trained a run: one, unless it was resumed."""
 _SMOOTHING = 10
 """Episodes of the moving average: start offsets alone scatter single returns by hundreds."""
 
@@ -58,10 +63,27 @@ class Training:
             return
         changes = ['--config', str(self.config)] if self.config else []
         resume = ['--resume'] if (self.directory / CHECKPOINT).exists() else []
-        _python(
+        seconds = _python(
             'hexapod_agent.train', '--observations', self.letters, '--seed', str(self.seed),
             '--episodes', str(self.episodes), '--out', str(self.directory), *changes, *resume,
         )  # fmt: skip
+        (self.directory / PROCESSOR).write_text(json.dumps([*self._processor(), seconds]))
+
+    def outcome(self) -> dict[str, float]:
+        """Return the mean return of its own evaluation, and what it took of a processor.
+
+        That is not known of a run that was cut before it said so.
+        """
+        returns = pd.read_csv(self.directory / EVALUATION)['episode_return']
+        seconds = self._processor()
+        known = len(seconds) > 0
+        values = (returns.mean(), sum(seconds) if known else math.nan)
+        return dict(zip(RUN_COLUMNS, values, strict=True))
+
+    def _processor(self) -> list[float]:
+        file = self.directory / PROCESSOR
+        found: list[float] = json.loads(file.read_text()) if file.exists() else []
+        return found
 
     def evaluate(self, starts: int) -> dict[str, float]:
         """Return the figures of its agent, without noise."""
@@ -75,10 +97,15 @@ class Training:
         )
 
 
-def _python(module: str, *arguments: str) -> None:
-    subprocess.run(
-        [sys.executable, '-m', module, *arguments], check=True, stdout=subprocess.DEVNULL
-    )
+def _python(module: str, *arguments: str) -> float:
+    """Run a module and return the processor time that it took, in seconds."""
+    command = [sys.executable, '-m', module, *arguments]
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL) as child:
+        _, status, usage = os.wait4(child.pid, 0)
+        child.returncode = os.waitstatus_to_exitcode(status)
+    if child.returncode:
+        raise subprocess.CalledProcessError(child.returncode, command)
+    return usage.ru_utime + usage.ru_stime
 
 
 def _figures(file: Path, starts: int, *subject: str) -> dict[str, float]:
@@ -107,8 +134,10 @@ def table(
     ]
     frame = pd.DataFrame(rows)
     frame['gain'] = frame['final_average_reward'] / best - 1.0
-    names = ['agent', 'seed', 'episodes', *COLUMNS, 'gain']
-    return frame[names].astype({'seed': 'Int64', 'episodes': 'Int64', 'falls': 'Int64'})
+    names = ['agent', 'seed', 'episodes', *COLUMNS, 'gain', *RUN_COLUMNS]
+    return frame.reindex(columns=names).astype(
+        {'seed': 'Int64', 'episodes': 'Int64', 'falls': 'Int64'}
+    )
 
 
 def main(args: Sequence[str] | None = None) -> None:
@@ -121,7 +150,7 @@ def main(args: Sequence[str] | None = None) -> None:
             options.config,
         )
         for letters in ('' if name == 'none' else name for name in options.sets)
-        for seed in range(1, options.seeds + 1)
+        for seed in range(options.first_seed, options.first_seed + options.seeds)
     ]  # fmt: skip
     changes = ['--config', str(options.config)] if options.config else []
     with ThreadPoolExecutor(options.jobs) as pool:
@@ -132,7 +161,7 @@ def main(args: Sequence[str] | None = None) -> None:
             ),
             BASELINES,
         )
-        figures = list(pool.map(lambda run: run.evaluate(options.starts), runs))
+        figures = list(pool.map(lambda run: run.evaluate(options.starts) | run.outcome(), runs))
     found = table(dict(zip(BASELINES, baselines, strict=True)), zip(runs, figures, strict=True))
     found.to_csv(options.out / 'table.csv', index=False, lineterminator='\n')
     best = found.loc[found['agent'] == 'constant action', 'final_average_reward'].item()
@@ -148,6 +177,9 @@ def _parser() -> CommandLine:
     )
     parser.add_argument(
         '--seeds', type=whole(ge=1), default=5, help='runs of each set (default 5)'
+    )
+    parser.add_argument(
+        '--first-seed', type=whole(ge=0), default=1, metavar='N', help='of each set (default 1)'
     )
     parser.add_argument('--episodes', type=whole(ge=1), default=300, help='per run (default 300)')
     parser.add_argument(

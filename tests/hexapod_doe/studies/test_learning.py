@@ -7,13 +7,14 @@ import pandas as pd
 import pytest
 from hexapod_doe.studies import learning
 
-ARGUMENTS = ['--sets', 'C', '--seeds', '1', '--episodes', '2', '--starts', '2']
+ARGUMENTS = ['--sets', 'C', '--seeds', '1', '--first-seed', '3', '--episodes', '2']
+ARGUMENTS += ['--starts', '2']
 CONFIG = """
 task: {time_limit_steps: 8}
 ddpg: {update_every: 4}
 actor: {hidden: [8, 8]}
 critic: {hidden: [8, 8]}
-training: {evaluation: 0, checkpoint_every: 1}
+training: {evaluation: 2, checkpoint_every: 1}
 """
 
 
@@ -22,8 +23,9 @@ def short_search(monkeypatch, tmp_path):
     """Stand in for the search of the constant action, which takes minutes."""
     run = learning._python
 
-    def python(module: str, *arguments: str) -> None:
-        run(module, *('zero' if argument == 'constant' else argument for argument in arguments))
+    def python(module: str, *arguments: str) -> float:
+        words = ('zero' if argument == 'constant' else argument for argument in arguments)
+        return run(module, *words)
 
     monkeypatch.setattr(learning, '_python', python)
     (tmp_path / 'short.yaml').write_text(CONFIG)
@@ -35,7 +37,10 @@ def test_study_leaves_its_table_and_is_not_repeated(tmp_path, capsys, monkeypatc
     learning.main(arguments)
     table = pd.read_csv(out / 'table.csv')
     assert list(table['agent']) == ['zero action', 'constant action', 'C']
-    assert list(table['seed'][2:]) == [1]
+    assert list(table['seed'][2:]) == [3]
+    judged = pd.read_csv(out / 'C_3' / 'evaluation.csv')['episode_return'].mean()
+    assert table['evaluation_return'][2] == pytest.approx(judged)
+    assert 0.1 < table['processor_seconds'][2] < 100.0
     assert table['gain'][1] == 0.0
     rewards = table['final_average_reward']
     assert list(table['gain']) == pytest.approx(list(rewards / rewards[1] - 1.0))
