@@ -13,8 +13,11 @@ from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_sim.command_line import one_line
 
 from hexapod_doe.campaigns.campaign import PLAN_FILE
+from hexapod_doe.campaigns.folder import read_progress
+from hexapod_doe.campaigns.forecast import is_foretold, seconds_of
 from hexapod_doe.campaigns.next_steps import CONFIRM_FOLDER, after_confirm
 from hexapod_doe.campaigns.plan_guard import check_free
+from hexapod_doe.campaigns.progress import Progress
 from hexapod_doe.designs.aliases import (
     aberration_note,
     alias_sets,
@@ -39,6 +42,7 @@ from hexapod_doe.designs.power import power, smallest_effect
 from hexapod_doe.designs.power_simulation import RunModel, simulate_power
 from hexapod_doe.designs.terms import terms_up_to
 
+_HOUR_S = 3600.0
 _FACTOR_FILES = ('.yaml', '.yml')
 _ROMAN = {2: 'II', 3: 'III', 4: 'IV', 5: 'V', 6: 'VI', 7: 'VII', 8: 'VIII', 9: 'IX'}
 
@@ -178,15 +182,46 @@ def _power(args: argparse.Namespace) -> None:
 
 
 def _hours(args: argparse.Namespace) -> None:
-    seconds = args.seconds_per_run / (args.run_episodes or args.episodes)
-    found = options(Budget(args.hours, seconds, args.workers), args.factors, args.episodes)
+    treatments = _treatments(args)
+    episodes = args.episodes or treatments.base.training.episodes
+    seconds, source = _seconds_per_episode(args, treatments.base, episodes)
+    count = len(treatments.factors)
+    found = options(Budget(args.hours, seconds, args.workers), count, episodes)
     chosen = propose(found)
+    print(f'A run of {episodes} episodes: {seconds * episodes:.3g} s of a core, {source}.')
     print('Proposed:')
-    print(describe(chosen, args.episodes, args.sigma))
+    print(describe(chosen, episodes, args.sigma))
     for option in found:
         if option is not chosen:
             print('\nInstead:')
-            print(describe(option, args.episodes, args.sigma))
+            print(describe(option, episodes, args.sigma))
+
+
+def _seconds_per_episode(
+    args: argparse.Namespace, base: RunSpec, episodes: int
+) -> tuple[float, str]:
+    """Return the time of an episode, with its share of the evaluation, and where it is from.
+
+    Raises:
+        ValueError: Nothing tells it.
+    """
+    if args.seconds_per_run:
+        return args.seconds_per_run / (args.run_episodes or episodes), 'as given'
+    if args.measured:
+        measured = read_progress(args.measured).measured
+        if not measured:
+            raise ValueError(f'--measured {args.measured}: no finished run, expected some')
+        progress = Progress('', {run.run_id: run for run in measured})
+        length = args.run_episodes or sum(run.planned for run in measured) / len(measured)
+        pace = progress.runs_per_core_hour
+        source = f'by {len(measured)} runs of {args.measured}, {pace:.1f} per core-hour'
+        return _HOUR_S / pace / length, source
+    if not is_foretold(base):
+        raise ValueError(
+            "expected --measured or --seconds-per-run: learner or ground is not article.yaml's"
+        )
+    spec = base.with_value('training.episodes', episodes, '--episodes')
+    return seconds_of(spec) / episodes, 'judged by two cores of a shared EPYC host'
 
 
 def leading_sets(campaign: Path) -> list[str]:

@@ -13,7 +13,11 @@ import pytest
 from hexapod_doe.designs.plan_file import read_plan
 from hexapod_doe.plan import main
 
-DATA = Path(__file__).parents[1] / 'data' / 'doe_cases'
+import hexapod_agent
+
+ROOT = Path(__file__).parents[2]
+DATA = ROOT / 'tests' / 'data' / 'doe_cases'
+SAMPLE = str(ROOT / 'bags' / 'sample_campaign')
 
 
 @pytest.fixture
@@ -114,8 +118,39 @@ def test_hours_become_a_proposal(capsys):
     options = ['--hours', '25', '--seconds-per-run', '10', '--run-episodes', '4']
     main(['hours', *options, '--workers', '2'])
     text = capsys.readouterr().out
-    assert text.startswith('Proposed:\nquarter: 32 cases x 2 replicates x 1000 episodes')
+    assert '\nProposed:\nquarter: 32 cases x 2 replicates x 1000 episodes' in text
     assert text.count('Instead:') == 3
+
+
+def test_hours_take_a_configuration_factors_and_what_finished_runs_took(tmp_path, capsys):
+    swift = str(Path(hexapod_agent.__file__).with_name('swift.yaml'))
+    budget = ['hours', '--hours', '4', '--workers', '2']
+    main([*budget, '--config', swift])
+    text = capsys.readouterr().out
+    assert text.startswith('A run of 140 episodes: 70.5 s of a core, judged by two cores')
+    assert 'quarter: 32 cases x 10 replicates x 140 episodes = 3.1 h' in text
+    main(
+        [
+            *budget,
+            '--config',
+            swift,
+            '--factors',
+            str(ROOT / 'docs' / 'factors.yaml'),
+            '--measured',
+            SAMPLE,
+        ]
+    )
+    text = capsys.readouterr().out
+    assert re.search(
+        r'^A run of 140 .* by 8 runs of .*sample_campaign, [\d.]+ per core-hour', text
+    )
+    with pytest.raises(SystemExit, match='2'):
+        main([*budget, '--set', 'learner.ddpg.batch_size=256'])
+    assert 'expected --measured or --seconds-per-run' in capsys.readouterr().err
+    (tmp_path / 'plan.csv').write_text(Path(SAMPLE, 'plan.csv').read_text())
+    with pytest.raises(SystemExit, match='2'):
+        main([*budget, '--measured', str(tmp_path)])
+    assert 'no finished run, expected some' in capsys.readouterr().err
 
 
 def test_the_measured_run_is_a_whole_training_unless_told(capsys):
@@ -123,7 +158,8 @@ def test_the_measured_run_is_a_whole_training_unless_told(capsys):
     main(budget)
     # 48 h are 144 trainings of 20 min: 128 are two of each case of a half.
     text = capsys.readouterr().out
-    assert text.startswith('Proposed:\nhalf: 64 cases x 2 replicates x 1000 episodes = 42.7 h')
+    assert text.startswith('A run of 1000 episodes: 1.2e+03 s of a core, as given.\nProposed:\n')
+    assert 'Proposed:\nhalf: 64 cases x 2 replicates x 1000 episodes = 42.7 h' in text
     main([*budget, '--run-episodes', '1000'])
     assert capsys.readouterr().out == text
 

@@ -9,8 +9,14 @@ from hexapod_agent.specification.run_spec import RunSpec
 
 SECONDS_PER_STEP = 0.0037
 """Of a worker's processor per control period, with article.yaml on shared cores: docs/fleet.md."""
-_ELSE = ('observations.', 'sensors.', 'task.', 'cpg.', 'learner.noise.', 'training.')
-"""What hardly changes the time of a step."""
+_WITHOUT_UPDATES = 0.1
+"""Share of that which is not its update; a step of the evaluation is that alone."""
+_RATIO = 'learner.ddpg.update_ratio'
+_COSTLY = (
+    'learner.algorithm', 'learner.actor.hidden', 'learner.critic.hidden', 'learner.critic.merge',
+    'learner.ddpg.batch_size', 'learner.ddpg.update_every', 'training.precision', 'scene.',
+)  # fmt: skip
+"""What else decides the time of a step."""
 _HOUR_S = 3600.0
 
 
@@ -23,10 +29,9 @@ def forecast(due: Sequence[RunSpec], workers: int) -> str:
     """
     what = f'{len(due)} runs of {due[0].training.episodes} episodes to train'
     later = 'the first episodes will tell how long that takes'
-    if not workers or not all(map(_as_measured, due)):
+    if not workers or not all(map(is_foretold, due)):
         return f'{what}; {later}'
-    steps = sum(spec.training.episodes * spec.task.time_limit_steps for spec in due)
-    seconds = steps * SECONDS_PER_STEP / min(workers, len(due))
+    seconds = sum(map(seconds_of, due)) / min(workers, len(due))
     side = f'{min(workers, len(due))} at a time' if min(workers, len(due)) > 1 else 'one at a time'
     return (
         f'{what}, {side}: about {_rounded(seconds)}, judged by two cores of a shared EPYC host; '
@@ -34,9 +39,18 @@ def forecast(due: Sequence[RunSpec], workers: int) -> str:
     )
 
 
-def _as_measured(spec: RunSpec) -> bool:
-    """Whether the learner is article.yaml's: another one takes another time."""
-    return all(key.startswith(_ELSE) for key in spec.differences(RunSpec.load()))
+def seconds_of(spec: RunSpec) -> float:
+    """Return the time that a shared core takes for a run with its evaluation, s."""
+    ratio = spec.value(_RATIO) / RunSpec.load().value(_RATIO)
+    step = _WITHOUT_UPDATES + (1.0 - _WITHOUT_UPDATES) * ratio
+    training = spec.training
+    steps = training.episodes * step + training.evaluation * _WITHOUT_UPDATES
+    return steps * spec.task.time_limit_steps * SECONDS_PER_STEP
+
+
+def is_foretold(spec: RunSpec) -> bool:
+    """Whether ground and learner are as article.yaml's: others take another time."""
+    return not any(key.startswith(_COSTLY) for key in spec.differences(RunSpec.load()))
 
 
 def _rounded(seconds: float) -> str:

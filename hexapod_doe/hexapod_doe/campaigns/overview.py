@@ -58,7 +58,20 @@ def figures(progress: Progress) -> RenderableType:
         ProgressBar(total=progress.planned or 1, completed=progress.episodes, width=32),
         f'{progress.episodes}/{progress.planned or "?"} episodes',
     )
-    return Group(table, summary(progress))
+    return Group(table, summary(progress), *(Text(line) for line in measured(progress)))
+
+
+def measured(progress: Progress) -> list[str]:
+    """Return a line of what finished runs took, and what is left at that pace; [] without one."""
+    if not progress.measured:
+        return []
+    pace, left = progress.runs_per_core_hour, progress.core_hours_left
+    line = f'{len(progress.measured)} runs measured: {pace:.1f} per core-hour'
+    if left:
+        line += f'; {left:.1f} core-hours left'
+    if side := len(progress.having(State.RUNNING)):
+        line += f', {left / side:.1f} h with {side} at a time'
+    return [line]
 
 
 def _workers(progress: Progress) -> RenderableType:

@@ -26,6 +26,7 @@ class State(StrEnum):
     DUE = 'due'
 
 
+_HOUR_S = 3600.0
 OPEN = (State.DUE, State.RUNNING, State.INTERRUPTED, State.DAMAGED)
 """What is not done yet, and will be."""
 
@@ -140,6 +141,29 @@ class Progress:
             return 0.0
         rate = self.episodes_per_second
         return left / rate if rate > 0.0 and longest else math.nan
+
+    @property
+    def measured(self) -> list[Run]:
+        """Finished runs whose time is known."""
+        return [run for run in self.having(State.DONE) if run.seconds > 0.0 and run.planned]
+
+    @property
+    def runs_per_core_hour(self) -> float:
+        """Runs that a core does in an hour, by those that are measured; NaN without one.
+
+        A worker has one run at a time, and so has each thread of a fleet's unless told otherwise.
+        """
+        done = sum(1.0 - run.earlier / run.planned for run in self.measured)
+        seconds = sum(run.seconds for run in self.measured)
+        return done / seconds * _HOUR_S if seconds else math.nan
+
+    @property
+    def core_hours_left(self) -> float:
+        """Time that what is open takes at that pace; NaN while nothing is measured."""
+        left = sum(
+            1.0 - len(r.returns) / r.planned if r.planned else 1.0 for r in self.having(*OPEN)
+        )
+        return left / self.runs_per_core_hour
 
 
 def _worker(name: str, runs: Iterable[Run]) -> Worker:

@@ -7,10 +7,9 @@ import argparse
 from pathlib import Path
 
 from hexapod_agent.specification.spec_text import add_spec_options
-from hexapod_sim.command_line import MOST_SEED, CommandLine, file, number, path, whole
+from hexapod_sim.command_line import MOST_SEED, CommandLine, file, folder, number, path, whole
 
 from hexapod_doe.designs.design import FRACTIONS
-from hexapod_doe.designs.planner import FULL_TRAINING
 
 _COUNT = whole(ge=1, le=1_000_000)
 _SEED = whole(ge=0, le=MOST_SEED)
@@ -154,14 +153,20 @@ def _add_power(parser: CommandLine) -> None:
     parser.add_argument('--seed', type=_SEED, default=1, help='seed of the simulation')
 
 
-def _add_hours(parser: argparse.ArgumentParser) -> None:
+def _add_hours(parser: CommandLine) -> None:
     parser.add_argument('--hours', type=number(gt=0), required=True, help='wall time to use')
-    parser.add_argument(
+    known = parser.add_mutually_exclusive_group()
+    known.add_argument(
+        '--measured',
+        type=folder,
+        metavar='CAMPAIGN',
+        help='folder of a campaign whose finished runs tell the time of a run',
+    )
+    known.add_argument(
         '--seconds-per-run',
         type=number(gt=0),
-        required=True,
         metavar='S',
-        help='measured time of a run of --run-episodes',
+        help='measured time of a run of --run-episodes (default: as on a shared core)',
     )
     parser.add_argument(
         '--run-episodes',
@@ -175,13 +180,10 @@ def _add_hours(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--episodes',
         type=_COUNT,
-        default=FULL_TRAINING,
         metavar='N',
-        help=f'wanted length of a training (default {FULL_TRAINING})',
+        help='wanted length of a training (that of --config)',
     )
-    parser.add_argument(
-        '--factors', type=_COUNT, default=7, metavar='K', help='how many factors (7)'
-    )
+    _add_factors(parser)
     parser.add_argument('--sigma', type=number(gt=0), metavar='X', help='SD of one run, if known')
 
 
@@ -195,6 +197,10 @@ def _add_design(parser: CommandLine) -> None:
         'shared cases are run once (default eighth)',
     )
     which.add_argument('--generators', metavar='F=ABCD,G=-ABDE', help='generators of the design')
+    _add_factors(parser)
+
+
+def _add_factors(parser: CommandLine) -> None:
     parser.add_argument(
         '--factors',
         default='7',

@@ -15,14 +15,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_sim.command_line import CommandLine, folder, one_line, whole
 
 from hexapod_doe import plan as plan_command
 from hexapod_doe.analysis.analysis import analyse
 from hexapod_doe.campaigns.campaign import PLAN_FILE
 from hexapod_doe.campaigns.folder import read_progress
-from hexapod_doe.campaigns.forecast import SECONDS_PER_STEP
+from hexapod_doe.campaigns.forecast import seconds_of
 from hexapod_doe.campaigns.next_steps import CONFIRM_FOLDER
 from hexapod_doe.campaigns.progress import Progress, State
 from hexapod_doe.campaigns.row import read_rows
@@ -38,9 +37,6 @@ CONFIRMING_RUNS = 10
 """New runs of each set."""
 ALWAYS_CONFIRMED = ('ABCDE', 'ABCDEFG', EMPTY_SET)
 """Sets that are confirmed whatever the choice is: the article's best, all, none."""
-_WITHOUT_UPDATES = 0.1
-"""Share of a step of article.yaml that is not its update: docs/fleet.md."""
-_RATIO = 'learner.ddpg.update_ratio'
 _HOUR_S = 3600.0
 
 
@@ -69,18 +65,12 @@ class Part:
         spec = read_rows(self.folder / PLAN_FILE)[0].spec
         if rates:
             return spec.training.episodes * len(rates) / sum(rates)
-        return spec.training.episodes * spec.task.time_limit_steps * _step_seconds(spec)
+        return seconds_of(spec)
 
     @property
     def measured(self) -> bool:
         """Whether runs of its own tell the time."""
         return bool(self.progress.having(State.DONE))
-
-
-def _step_seconds(spec: RunSpec) -> float:
-    """Return the time of a control period on a shared core, from that of article.yaml."""
-    ratio = spec.value(_RATIO) / RunSpec.load().value(_RATIO)
-    return SECONDS_PER_STEP * (_WITHOUT_UPDATES + (1 - _WITHOUT_UPDATES) * ratio)
 
 
 def parts_of(study: Path) -> list[Part]:

@@ -4,6 +4,7 @@
 import math
 
 import pytest
+from hexapod_doe.campaigns.overview import measured
 from hexapod_doe.campaigns.progress import Progress, Run, State, duration
 
 
@@ -28,6 +29,27 @@ def test_the_time_left_is_what_is_open_at_the_present_rate():
 def test_nothing_is_known_of_a_time_left_that_nobody_works_off():
     assert math.isnan(made(DONE, DUE).seconds_left)
     assert math.isnan(made(DUE).seconds_left)
+
+
+def test_finished_runs_tell_how_many_a_core_does_in_an_hour():
+    resumed = Run('e', '', State.DONE, '/w2', 10, [0.0] * 10, seconds=10.0, earlier=5)
+    # One run in 20 s and half a run in 10 s: 1.5 in 30 s.
+    assert made(DONE, resumed).runs_per_core_hour == pytest.approx(180.0)
+    # Six tenths of the run under way, and one that is due.
+    assert made(DONE, RUNNING, DUE).core_hours_left == pytest.approx(1.6 * 20.0 / 3600.0)
+    assert math.isnan(made(RUNNING).runs_per_core_hour)
+    assert made(DONE).core_hours_left == 0.0
+
+
+def test_a_line_says_what_finished_runs_took_and_how_long_the_others_will():
+    hour = Run('a', '', State.DONE, '/w1', 10, [0.0] * 10, seconds=1800.0)
+    line = '1 runs measured: 2.0 per core-hour'
+    assert measured(made(hour)) == [line]
+    assert measured(made(hour, DUE)) == [f'{line}; 0.5 core-hours left']
+    under_way = [Run(name, '', State.RUNNING, f'/{name}', 10) for name in 'bc']
+    left = '1.0 core-hours left, 0.5 h with 2 at a time'
+    assert measured(made(hour, *under_way)) == [f'{line}; {left}']
+    assert measured(made(DUE)) == []
 
 
 def test_the_rate_is_a_real_number_also_where_it_is_nought():
