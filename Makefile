@@ -94,6 +94,13 @@ $(VENV)-bench/.ready: $(VENV)/.ready requirements-bench.txt
 film: setup  ## film the robot on its way, without a display
 	@$(ENTER); ros2 run hexapod_agent film ros_ws/src/hexapod_bringup/agents/ABCDE.pt --out walk.gif --strip docs/images/walk.png \
 		--width 330 --height 250 --zoom 1.7 --seconds 1.5 --seed 3
+	@$(ENTER); strip() { name=$$1; shift; ros2 run hexapod_agent film ros_ws/src/hexapod_bringup/agents/ABCDE.pt \
+		--width 240 --height 160 --seconds 9 --frames 3 --strip docs/images/scenario_$$name.png "$$@"; }; \
+	strip rough --set scene.name=rough --set scene.roughness=0.05 && \
+	strip stairs --set scene.name=stairs --set scene.rise=0.03 && \
+	strip slope --set scene.name=slope --set scene.gradient=0.3 && \
+	strip payload --set robot.payload=1.2 && \
+	strip dead_leg --set robot.dead_legs=lf --set robot.fault_time=4
 
 clean-demo:  ## forget the demo campaign, and leave what else lies in its folder
 	rm -rf $(addprefix $(DEMO)/,runs logs report confirm plan.csv plan.json config.yaml progress.html failures.csv \

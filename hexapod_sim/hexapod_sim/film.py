@@ -26,6 +26,7 @@ PICTURES = ('.png', '.jpg', '.jpeg', '.webp')
 MOST_WIDTH, MOST_HEIGHT = 1280, 720  # pixels: offwidth and offheight of hexapod.xml
 
 _COLOURS = 96  # of a GIF's palette: more make it larger and the robot no prettier
+_DECOR = 1000  # sites, lights and the like that are drawn beside a model's geoms
 _GAP = 6  # white pixels between the frames of a strip
 
 
@@ -61,7 +62,7 @@ class Camera:
         self._camera.type = mujoco.mjtCamera.mjCAMERA_FIXED
         self._camera.fixedcamid = simulation.model.camera(name).id
         self._options = mujoco.MjvOption()
-        self._scene = mujoco.MjvScene(simulation.model, maxgeom=1000)
+        self._scene = mujoco.MjvScene(simulation.model, simulation.model.ngeom + _DECOR)
         self._surface = _surface(width, height)
         self._surface.make_current()
         self._context = mujoco.MjrContext(
