@@ -96,7 +96,7 @@ film: setup  ## film the robot on its way, without a display
 		--width 330 --height 250 --zoom 1.7 --seconds 1.5 --seed 3
 	@$(ENTER); strip() { name=$$1; shift; ros2 run hexapod_agent film ros_ws/src/hexapod_bringup/agents/ABCDE.pt \
 		--width 240 --height 160 --seconds 9 --frames 3 --strip docs/images/scenario_$$name.png "$$@"; }; \
-	strip rough --set scene.name=rough --set scene.roughness=0.05 && \
+	strip rough --set scene.name=rough --set scene.roughness=0.03 && \
 	strip stairs --set scene.name=stairs --set scene.rise=0.03 && \
 	strip slope --set scene.name=slope --set scene.gradient=0.3 && \
 	strip payload --set robot.payload=1.2 && \

@@ -43,8 +43,12 @@ def train_episode(env: HexapodLine, trainer: Trainer) -> EpisodeSummary:
 def evaluate(env: HexapodLine, trainer: Trainer) -> Iterator[EpisodeSummary]:
     """Play the episodes of the run's evaluation; the last one's average return is their mean."""
     player = trainer.evaluator()
-    for episode in range(trainer.config.training.evaluation):
-        yield _run_episode(env, player, EVALUATION_SEED, episode)
+    while not player.is_done:
+        env.task.enter(player.config.world)
+        is_reported = player.is_reported
+        summary = _run_episode(env, player, EVALUATION_SEED, player.start)
+        if is_reported:
+            yield summary
 
 
 def _run_episode(env: HexapodLine, agent: Agent, seed: int, episode: int) -> EpisodeSummary:

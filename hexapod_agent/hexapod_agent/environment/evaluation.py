@@ -6,6 +6,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from hexapod_sim.recovery import LATE_STEPS, has_recovered
 from hexapod_sim.robot import CONTROL_PERIOD_NS
 from hexapod_sim.sensors import read
 from hexapod_sim.sums import ordered_sum
@@ -16,8 +17,6 @@ from hexapod_agent.environment.env import HexapodLine
 
 _PERIOD_S = CONTROL_PERIOD_NS * 1e-9
 _LAST_STEPS = 200  # 5 s, in which the offset is judged
-_LATE_STEPS = 320  # 8 s, in which a varied robot has to walk again
-_RECOVERED_SHARE = 0.5  # of the undamaged robot's speed there
 
 
 class GraphError(RuntimeError):
@@ -110,7 +109,7 @@ class EpisodeMeter:
     def episode(self, fell: bool) -> Episode:
         """Close the episode."""
         way, energy = self._xs[-1] - self._xs[0], self._power * _PERIOD_S
-        late = self._xs[-1 - _LATE_STEPS :]
+        late = self._xs[-1 - LATE_STEPS :]
         late_speed = (late[-1] - late[0]) / (max(len(late) - 1, 1) * _PERIOD_S)
         return Episode(self._return, np.array(self._offsets), way, energy, fell, late_speed)
 
@@ -126,18 +125,6 @@ def run_episode(env: HexapodLine, policy: Policy, seed: int, episode: int) -> Ep
         x = float(simulation.position[0])
         meter.add(reward, env.task.line_offset, x, *joints.values())
     return meter.episode(env.outcome.terminated)
-
-
-def has_recovered(fell: bool, late_speed: float, undamaged_speed: float) -> bool:
-    """Return whether a varied robot walks again.
-
-    Args:
-        fell: Whether its episode ended by a failure.
-        late_speed: Its speed in the last 8 s, m/s.
-        undamaged_speed: Mean of the same, of the same agent with the robot as it was built and
-            from the same starts, m/s.
-    """
-    return not fell and late_speed >= _RECOVERED_SHARE * undamaged_speed
 
 
 def summarize(episodes: list[Episode], undamaged_speed: float | None = None) -> Evaluation:

@@ -127,7 +127,7 @@ class Fleet:
     def _begin_episode(self, slot: Slot) -> None:
         run_seed, episode = slot.next_episode
         seed = episode_seed(run_seed, episode)
-        slot.observation, slot.outcome = self._robots.reset(slot.index, slot.trainer.config, seed)
+        slot.observation, slot.outcome = self._robots.reset(slot.index, slot.config, seed)
         slot.agent.begin_episode(episode)
 
     def _physics(self, slots: Sequence[Slot]) -> list[Job]:

@@ -12,10 +12,12 @@ from hexapod_sim.task import EVALUATION_SEED, Outcome
 from numpy.typing import NDArray
 
 from hexapod_agent.fleet.robots import PatternError
-from hexapod_agent.learning.player import Agent, Player
+from hexapod_agent.learning.evaluator import Evaluator
+from hexapod_agent.learning.player import Agent
 from hexapod_agent.learning.summary import EpisodeSummary
 from hexapod_agent.learning.training import Trainer, TrainingDivergedError
 from hexapod_agent.specification.observation import ObservationError
+from hexapod_agent.specification.run_spec import RunSpec
 
 
 class Run(Protocol):
@@ -55,7 +57,6 @@ class Slot:
         waits: Whether its next episode has not begun yet.
         fault: Why the run cannot go on; no job is done for it any more.
         player: Plays what the run has learned, once it is being evaluated.
-        evaluated: Complete episodes of the evaluation.
     """
 
     index: int
@@ -64,8 +65,7 @@ class Slot:
     outcome: Outcome = field(init=False)
     waits: bool = True
     fault: Exception | None = None
-    player: Player | None = None
-    evaluated: int = 0
+    player: Evaluator | None = None
 
     @property
     def trainer(self) -> Trainer:
@@ -81,8 +81,13 @@ class Slot:
     def next_episode(self) -> tuple[int, int]:
         """Seed of the run whose start the next episode has, and its number there."""
         if self.player is not None:
-            return EVALUATION_SEED, self.evaluated
+            return EVALUATION_SEED, self.player.start
         return self.trainer.seed, self.trainer.episode
+
+    @property
+    def config(self) -> RunSpec:
+        """The specification in whose world the next episode is."""
+        return self.trainer.config if self.player is None else self.player.config
 
     @property
     def is_last(self) -> bool:
@@ -92,15 +97,19 @@ class Slot:
     @property
     def is_done(self) -> bool:
         """Whether there is no further episode."""
-        evaluation = self.trainer.config.training.evaluation
-        return self.trainer.episode >= self.run.episodes and self.evaluated >= evaluation
+        if self.trainer.episode < self.run.episodes:
+            return False
+        if self.player is None:
+            return not self.trainer.config.training.evaluation
+        return self.player.is_done
 
     def end_episode(self) -> None:
         """Close an episode, of the training or of the evaluation that follows it."""
+        is_reported = self.player is not None and self.player.is_reported
         summary = self.agent.end_episode(self.observation, self.outcome)
-        if self.player is not None:
-            self.evaluated += 1
+        if is_reported:
             self.run.evaluated(summary)
+        if self.player is not None:
             return
         self.run.episode_ended(summary)
         if self.trainer.episode >= self.run.episodes:

@@ -40,9 +40,19 @@ METRICS = (
     ),
     Metric('saturated_share', '1', 'share of the actor’s outputs beyond 0.95 of their range'),
     Metric('updates', '1', 'gradient steps of the episode'),
+    Metric(
+        'late_speed', 'm/s', 'in the evaluation of a varied robot: speed along the line over the '
+        'last 8 s, as the reward counts it'
+    ),
+    Metric(
+        'recovered', '1', 'in the evaluation of a varied robot: 1 if it did not fail and its late '
+        'speed is half of that of the robot as it was built, else 0'
+    ),
 )  # fmt: skip
 SATURATED_SHARE, UPDATES = 'saturated_share', 'updates'
 """What every agent reports."""
+LATE_SPEED, RECOVERED = 'late_speed', 'recovered'
+"""What the evaluation of a varied robot reports."""
 
 
 def in_order(values: Mapping[str, float]) -> dict[str, float]:

@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 
 from hexapod_agent.algorithms import ALGORITHMS
 from hexapod_agent.algorithms.learner import Metrics, Problem
+from hexapod_agent.learning.evaluator import Evaluator
 from hexapod_agent.learning.numerics import resolved
-from hexapod_agent.learning.player import Player
 from hexapod_agent.learning.summary import EpisodeRecord, EpisodeSummary
 from hexapod_agent.specification.run_spec import ConfigError, RunSpec
 
@@ -79,9 +79,9 @@ class Trainer:
             raise RuntimeError('summary: no episode is complete yet')
         return self._summary
 
-    def evaluator(self) -> Player:
+    def evaluator(self) -> Evaluator:
         """Return what plays the agent as it is now: at the end, for the run's evaluation."""
-        return Player(self.learner.policy(), self.config.training.evaluation)
+        return Evaluator(self.learner.policy(), self.config)
 
     def begin_episode(self, episode: int) -> None:
         """Start episode number `episode`, dropping one that was left unfinished.

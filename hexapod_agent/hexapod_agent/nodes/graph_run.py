@@ -192,10 +192,14 @@ class GraphRun:
             return {}
         player = self._agent.evaluator()
         self.phase = 'evaluating'
-        for start in range(self._evaluation):
+        while not player.is_done:
             self._check_wanted(self._episode + 1)
-            last_ns = await self._play(player, EVALUATION_SEED, start, sampled=False)
-            self._context.evaluation.publish(self._result(player.summary, last_ns))
+            if not player.start and self._config.robot.variations:
+                await self._context.peers.configure_robot(player.config)
+            is_reported = player.is_reported
+            last_ns = await self._play(player, EVALUATION_SEED, player.start, sampled=False)
+            if is_reported:
+                self._context.evaluation.publish(self._result(player.summary, last_ns))
         return {'evaluation_return': repr(player.summary.average_return)}
 
     async def _run_episode(self) -> None:

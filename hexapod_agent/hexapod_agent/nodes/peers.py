@@ -71,10 +71,14 @@ class Peers:
         """Give sim and pattern generator what a run's specification says of them."""
         await self.configure('sim', 'task', asdict(spec.task))
         await self.configure('sim', 'scene', asdict(spec.scene))
-        await self.configure('sim', 'robot', asdict(spec.robot))
+        await self.configure_robot(spec)
         qualities = {'qualities': quality.to_text(spec.sensors)}
         await self.configure('sim', 'sensors', qualities)
         await self.configure('cpg', 'cpg', asdict(spec.cpg.hopf))
+
+    async def configure_robot(self, spec: RunSpec) -> None:
+        """Give the sim the variations of the robot alone."""
+        await self.configure('sim', 'robot', asdict(spec.robot))
 
     async def greet_recorder(self) -> None:
         """Wait until the recorder's answers arrive."""

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 
 import numpy as np
 import pandas as pd
+from hexapod_agent.learning.metrics import RECOVERED
 
 from hexapod_doe.bags.run_record import RunRecord
 from hexapod_doe.errors import AnalysisError, BagError
@@ -88,7 +89,8 @@ def response_of(run: RunRecord, name: str) -> float:
     Args:
         run: What its bag holds.
         name: A key of `RESPONSES`, or a reward term, of which the mean over the last `window`
-            episodes is taken, or, after `evaluation_`, over those of the evaluation.
+            episodes is taken, or, after `evaluation_`, over those of the evaluation; of a varied
+            robot `evaluation_recovered`, the share of them in which it walks again.
 
     Raises:
         AnalysisError: There is no such response.
@@ -96,14 +98,27 @@ def response_of(run: RunRecord, name: str) -> float:
     """
     if name in RESPONSES:
         return RESPONSES[name](run)
-    terms = [str(column) for column in run.episodes if str(column).startswith(TERM_PREFIX)]
+    terms = terms_of(run)
     if name in terms:
         return float(_last(run, name).mean())
-    judged = {f'{EVALUATION_PREFIX}{term}': term for term in terms}
+    judged = judged_of(run)
     if name in judged:
         return float(_evaluation(run)[judged[name]].mean())
     known = ', '.join([*RESPONSES, *terms, *judged])
     raise AnalysisError(f'response {name!r}: run {run.run_id} has {known}')
+
+
+def terms_of(run: RunRecord) -> list[str]:
+    """Return the names of a run's reward terms."""
+    return [str(column) for column in run.episodes if str(column).startswith(TERM_PREFIX)]
+
+
+def judged_of(run: RunRecord) -> dict[str, str]:
+    """Return columns of a run's evaluation by the responses that are their means."""
+    columns = terms_of(run)
+    if RECOVERED in run.evaluation and run.evaluation[RECOVERED].notna().all():
+        columns.append(RECOVERED)
+    return {f'{EVALUATION_PREFIX}{column}': column for column in columns}
 
 
 def _evaluation(run: RunRecord) -> pd.DataFrame:

@@ -17,7 +17,13 @@ from hexapod_doe.errors import TableError
 from hexapod_doe.fitting.model import EMPTY_SET
 from hexapod_doe.tables.bag_factors import set_of
 from hexapod_doe.tables.bag_groups import Part, group_runs, sound_bags
-from hexapod_doe.tables.bag_response import EVALUATION_PREFIX, RESPONSES, TERM_PREFIX, response_of
+from hexapod_doe.tables.bag_response import (
+    EVALUATION_PREFIX,
+    RESPONSES,
+    judged_of,
+    response_of,
+    terms_of,
+)
 
 TRAINING, EVALUATION = 'training', 'evaluation'
 DESIGN, FOLLOW_UP, CONFIRMATION = 'design', 'follow-up', 'confirmation'
@@ -44,6 +50,8 @@ _MEANINGS = {
     'evaluation_return': 'mean return without noise, after the training, from starts that all '
     'runs share',
     'evaluation_falls': 'episodes of the evaluation that ended by a failure',
+    'evaluation_recovered': 'share of those in which a varied robot does not fail and has half '
+    'the late speed of the robot as it was built',
     'final_average_reward': 'mean of the last returns of the training, with exploration noise',
     'best_average_reward': 'highest mean of as many returns in a row',
     'final_iqm_reward': 'mean of the middle half of the last returns',
@@ -167,8 +175,7 @@ def _run_row(campaign: str, part: Part, run: RunRecord) -> dict[str, Any]:
 
 def _responses(run: RunRecord) -> dict[str, float]:
     """Return all that the run may be judged by, of the evaluation where it has one."""
-    terms = [str(column) for column in run.episodes if str(column).startswith(TERM_PREFIX)]
-    names = [*RESPONSES, *terms, *(f'{EVALUATION_PREFIX}{term}' for term in terms)]
+    names = [*RESPONSES, *terms_of(run), *judged_of(run)]
     if run.evaluation.empty:
         names = [name for name in names if not name.startswith(EVALUATION_PREFIX)]
     return {name: response_of(run, name) for name in names}

@@ -82,6 +82,17 @@ def test_each_algorithm_learns_in_a_mixed_fleet_as_alone(
         assert_same_state(run, alone)
 
 
+def test_varied_robots_are_judged_in_a_fleet_as_they_are_alone(
+    small_config, new_run, train_alone, train_fleet
+):
+    config = small_config.changed({'robot': {'dead_legs': 'lf', 'fault_time': 0.25}}, 'a test')
+    fleet = [new_run(config, letters, seed) for letters, seed in RUNS]
+    train_fleet(fleet, num_slots=2)
+    for run, (letters, seed) in zip(fleet, RUNS, strict=True):
+        assert_same_results(run, train_alone(new_run(config, letters, seed)))
+        assert all(each.metrics['recovered'] in (0.0, 1.0) for each in run.evaluation)
+
+
 def test_bad_sensors_are_as_bad_in_a_fleet(small_config, new_run, train_alone, train_fleet):
     bad = {
         'imu_data': {'noise': 0.05, 'bias': 0.1, 'delay': 0.05, 'dropout': 0.3, 'rate': 20.0},

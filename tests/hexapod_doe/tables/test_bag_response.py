@@ -84,6 +84,15 @@ def test_responses(name: str, window: int, expected: float) -> None:
     assert response_of(run(window), name) == pytest.approx(expected)
 
 
+def test_the_share_that_recovers_is_a_response_of_varied_robots() -> None:
+    varied = judged()
+    varied.evaluation['recovered'] = [1.0, 0.0, 1.0]
+    assert response_of(varied, 'evaluation_recovered') == pytest.approx(2 / 3)
+    varied.evaluation['recovered'] = [float('nan')] * 3
+    with pytest.raises(AnalysisError, match="response 'evaluation_recovered': run r1 has"):
+        response_of(varied, 'evaluation_recovered')
+
+
 def test_an_unknown_response_is_an_error_that_names_the_known_ones() -> None:
     with pytest.raises(AnalysisError, match=f"'speed': run r1 has {', '.join(RESPONSES)}, term_v"):
         response_of(run(4), 'speed')
