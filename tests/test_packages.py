@@ -26,6 +26,7 @@ SHARED = {file.stem: file for file in (ROOT / 'tests' / 'support').glob('*.py')}
 ROSDEP_KEYS = {
     'PIL': 'python3-pil',
     'annotated_types': '',
+    'cmaes': '',
     'gymnasium': 'python3-gymnasium-pip',
     'hypothesis': 'python3-hypothesis',
     'jinja2': 'python3-jinja2',

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 from hexapod_cpg.mapping import ACTION_SIZE
 from hexapod_sim.command_line import MOST_SEED, CommandLine, file, output_file, whole
-from numpy.typing import NDArray
 from rich.console import Console
 from rich.progress import Progress, track
 from rich.table import Table
@@ -25,7 +24,6 @@ from hexapod_agent.algorithms.policies import (
     random_policy,
 )
 from hexapod_agent.deployment import agent_file
-from hexapod_agent.environment.constant_action import GENERATIONS, best_constant_action
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.environment.evaluation import (
     Episode,
@@ -34,6 +32,7 @@ from hexapod_agent.environment.evaluation import (
     run_episode,
     summarize,
 )
+from hexapod_agent.environment.open_loop import GENERATIONS, OpenLoopGait, best_open_loop
 from hexapod_agent.evaluation_cells import Cell, add_cell_options, cells
 from hexapod_agent.specification.run_spec import ConfigError, RunSpec
 from hexapod_agent.specification.spec_text import add_spec_options
@@ -55,6 +54,9 @@ _ROWS = (
 _MEASURED = ('joint_states', 'joint_torques', 'line_offset')
 _CHANGEABLE = ('scene', 'robot', 'task', 'quality', 'sensors')
 """Sections that an agent may meet otherwise than it was trained with."""
+
+
+_SEARCHED = {'constant': 'best constant action', 'open-loop': 'best open-loop gait'}
 
 
 @dataclass(frozen=True)
@@ -102,8 +104,9 @@ def _parser() -> CommandLine:
     parser.add_argument('checkpoint', nargs='*', type=file, help='files written by train')
     parser.add_argument(
         '--policy',
-        choices=('zero', 'random', 'constant'),
-        help='a baseline instead; constant: the best constant action, searched for minutes',
+        choices=('zero', 'random', *_SEARCHED),
+        help='a baseline instead; constant: the best constant action; open-loop: the best one '
+        'with a frequency and a first phase of its own; both are searched for minutes',
     )
     add_spec_options(parser)
     add_cell_options(parser)
@@ -139,7 +142,7 @@ def _subjects(options: argparse.Namespace) -> Iterator[_Subject]:
         name, policy = {
             'zero': ('zero action', constant_policy(np.zeros(ACTION_SIZE, np.float32))),
             'random': ('random actions', random_policy(options.seed)),
-            'constant': ('best constant action', None),
+            **{policy: (name, None) for policy, name in _SEARCHED.items()},
         }[options.policy]
         yield _Subject(None, name, spec, policy)
 
@@ -179,15 +182,18 @@ def _episodes(subject: _Subject, cell: Cell, options: argparse.Namespace) -> Ite
     if options.graph and subject.checkpoint:
         _check_measured(cell.spec)
         return _on_graph(subject.checkpoint, cell.spec, options)
-    env = HexapodLine(config=cell.spec)
-    policy = subject.policy or constant_policy(_searched(env))
+    policy, spec = subject.policy, cell.spec
+    if policy is None:
+        gait = _searched(spec, options.policy == 'open-loop')
+        policy, spec = constant_policy(gait.action), gait.spec
+    env = HexapodLine(config=spec)
     return (run_episode(env, policy, options.seed, start) for start in range(options.starts))
 
 
-def _searched(env: HexapodLine) -> NDArray[np.float32]:
+def _searched(spec: RunSpec, rhythm: bool) -> OpenLoopGait:
     with Progress(transient=True) as progress:
         task = progress.add_task('search', total=GENERATIONS)
-        return best_constant_action(env, lambda generation: progress.advance(task))
+        return best_open_loop(spec, rhythm, lambda generation: progress.advance(task))
 
 
 def _check_measured(spec: RunSpec) -> None:

@@ -241,8 +241,18 @@ def _checked(spec: RunSpec, source: str) -> RunSpec:
     """Return a specification whose values go with one another."""
     try:
         spec.learner.check()
+        _check_precision(spec)
         check_qualities(spec.sensors)
         check_walk(spec.scene, spec.task.farthest)
     except ValueError as error:
         raise ConfigError(f'{source}: {error}') from error
     return spec
+
+
+def _check_precision(spec: RunSpec) -> None:
+    """Refuse arithmetic that the algorithm does not have."""
+    if spec.training.precision == 'bfloat16' and not spec.learner.has_bfloat16:
+        raise ValueError(
+            f"training.precision is 'bfloat16', which learner.algorithm {spec.learner.algorithm} "
+            "does not compute with; expected 'float32', 'float32_fast' or 'auto'"
+        )

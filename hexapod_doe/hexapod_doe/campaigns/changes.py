@@ -41,7 +41,7 @@ class Changes:
         base = treatments.base if self.config is None else treatments.base.changed_by(self.config)
         base = base.with_settings(self.settings)
         _check_left_alone(base, treatments)
-        base = resolved(base)
+        base = _with_precision(base, treatments)
         return treatments if base == treatments.base else replace(treatments, base=base)
 
 
@@ -60,3 +60,14 @@ def _check_left_alone(base: RunSpec, treatments: Treatments) -> None:
             f'{key} is {given!r} by --config or --set, but {decided} decides it in each run: '
             f"expected {planned!r}, as the plan's base has it, or nothing"
         )
+
+
+def _with_precision(base: RunSpec, treatments: Treatments) -> RunSpec:
+    """Return a base with one precision for all runs: the best that their algorithms have."""
+    key, plain = 'learner.algorithm', 'float32_fast'
+    factors = [factor for factor in treatments.factors if factor.key == key]
+    values = [factor.value(level) for factor in factors for level in (-1, 1)]
+    found = [resolved(spec) for spec in (base, *(base.with_value(key, v, key) for v in values))]
+    if base.training.precision == 'auto' and plain in [s.training.precision for s in found]:
+        return base.with_value('training.precision', plain, key)
+    return found[0]

@@ -7,6 +7,7 @@
 
 trains sets of sensors with several seeds, evaluates each agent from the same starts as the
 baselines, and leaves table.csv and curves.png. What a directory already holds is not repeated.
+With several configurations it compares them, so algorithms too.
 """
 
 import json
@@ -30,7 +31,11 @@ from hexapod_doe.reporting.figures.parts import grid
 from hexapod_doe.reporting.figures.style import BLUE, INK, MUTED, ORANGE, RC
 
 FIGURES = 'evaluation.json'
-BASELINES = ('zero', 'constant')
+BASELINES = {
+    'zero': 'zero action',
+    'constant': 'constant action',
+    'open-loop': 'open-loop gait',
+}
 COLUMNS = (
     'final_average_reward',
     'mean_offset',
@@ -39,7 +44,7 @@ COLUMNS = (
     'falls',
     'energy_per_metre',
 )
-RUN_COLUMNS = ('evaluation_return', 'processor_seconds')
+RUN_COLUMNS = ('evaluation_return', 'steps', 'processor_seconds')
 PROCESSOR = 'processor.json'
 """Processor time of each command that trained a run: one, unless it was resumed."""
 _SMOOTHING = 10
@@ -55,6 +60,7 @@ class Training:
     episodes: int
     directory: Path
     config: Path | None
+    label: str
 
     def train(self) -> None:
         """Train it, from its checkpoint if it has one."""
@@ -70,14 +76,15 @@ class Training:
         (self.directory / PROCESSOR).write_text(json.dumps([*self._processor(), seconds]))
 
     def outcome(self) -> dict[str, float]:
-        """Return the mean return of its own evaluation, and what it took of a processor.
+        """Return the mean return of its own evaluation, its steps, and its processor time.
 
-        That is not known of a run that was cut before it said so.
+        That time is not known of a run that was cut before it said so.
         """
         returns = pd.read_csv(self.directory / EVALUATION)['episode_return']
         seconds = self._processor()
         known = len(seconds) > 0
-        values = (returns.mean(), sum(seconds) if known else math.nan)
+        steps = pd.read_csv(self.directory / LOG)['steps'].sum()
+        values = (returns.mean(), steps, sum(seconds) if known else math.nan)
         return dict(zip(RUN_COLUMNS, values, strict=True))
 
     def _processor(self) -> list[float]:
@@ -93,7 +100,7 @@ class Training:
         """Return the returns of its episodes."""
         columns = ['episode', 'episode_return', 'average_return']
         return pd.read_csv(self.directory / LOG)[columns].assign(
-            observations=self.letters or 'none', seed=self.seed
+            observations=self.label, seed=self.seed
         )
 
 
@@ -127,32 +134,34 @@ def table(
 ) -> pd.DataFrame:
     """Return one row per agent; `gain` is the reward over that of the best constant action."""
     best = baselines['constant']['final_average_reward']
-    rows = [{'agent': f'{name} action', **figures} for name, figures in baselines.items()]
+    rows = [{'agent': BASELINES[name], **figures} for name, figures in baselines.items()]
     rows += [
-        {'agent': run.letters or 'none', 'seed': run.seed, 'episodes': run.episodes, **figures}
+        {'agent': run.label, 'seed': run.seed, 'episodes': run.episodes, **figures}
         for run, figures in runs
     ]
     frame = pd.DataFrame(rows)
     frame['gain'] = frame['final_average_reward'] / best - 1.0
     names = ['agent', 'seed', 'episodes', *COLUMNS, 'gain', *RUN_COLUMNS]
-    return frame.reindex(columns=names).astype(
-        {'seed': 'Int64', 'episodes': 'Int64', 'falls': 'Int64'}
-    )
+    whole_numbers = ('seed', 'episodes', 'steps', 'falls')
+    return frame.reindex(columns=names).astype(dict.fromkeys(whole_numbers, 'Int64'))
 
 
 def main(args: Sequence[str] | None = None) -> None:
     """Train, evaluate and tabulate."""
     options = _parser().parse_args(args)
     options.out.mkdir(parents=True, exist_ok=True)
+    configs: list[Path | None] = options.config or [None]
     runs = [
         Training(
-            letters, seed, options.episodes, options.out / f'{letters or "none"}_{seed}',
-            options.config,
+            '' if name == 'none' else name, seed, options.episodes,
+            options.out / f'{label.replace(": ", "_")}_{seed}', config, label,
         )
-        for letters in ('' if name == 'none' else name for name in options.sets)
+        for config in configs
+        for name in options.sets
+        for label in [f'{config.stem}: {name}' if config and len(configs) > 1 else name]
         for seed in range(options.first_seed, options.first_seed + options.seeds)
     ]  # fmt: skip
-    changes = ['--config', str(options.config)] if options.config else []
+    changes = ['--config', str(configs[0])] if configs[0] else []
     with ThreadPoolExecutor(options.jobs) as pool:
         list(pool.map(Training.train, runs))
         baselines = pool.map(
@@ -185,7 +194,10 @@ def _parser() -> CommandLine:
     parser.add_argument(
         '--starts', type=whole(ge=1), default=50, help='of an evaluation (default 50)'
     )
-    parser.add_argument('--config', type=file, help='YAML file of changes to article.yaml')
+    parser.add_argument(
+        '--config', type=file, nargs='+', help='YAML file of changes to article.yaml; of several, '
+        'each is trained, and the first one has the task of the baselines',
+    )  # fmt: skip
     parser.add_argument(
         '--jobs', type=whole(ge=1), default=2, help='runs side by side (default 2)'
     )
@@ -206,7 +218,8 @@ def draw(curves: pd.DataFrame, constant: float, path: Path) -> None:
         for axes, name in zip(panels, sets, strict=True):
             _draw_set(axes, curves[curves['observations'] == name])
             axes.axhline(constant, color=ORANGE, linestyle='--', linewidth=1.0)
-            axes.set_title('always-on sensors alone' if name == 'none' else f'with {name}')
+            title = name if ':' in name else f'with {name}'
+            axes.set_title('always-on sensors alone' if name == 'none' else title)
             axes.set_xlabel('episode')
         panels[0].annotate(
             'best constant action', (1.0, constant), (0, -4), xycoords=('axes fraction', 'data'),

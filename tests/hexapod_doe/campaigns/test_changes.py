@@ -42,6 +42,22 @@ def test_the_rows_of_a_campaign_have_one_precision(made, precision, monkeypatch)
     assert {row.expected[spec_key('training.precision')] for row in rows} == {precision}
 
 
+@pytest.mark.parametrize('levels', [('ddpg', 'sac'), ('ppo', 'ddpg')])
+def test_the_precision_is_one_that_every_algorithm_of_a_plan_has(levels, tmp_path, monkeypatch):
+    monkeypatch.setattr(numerics, 'computes_bfloat16', lambda: True)
+    low, high = levels
+    (tmp_path / 'f.yaml').write_text(
+        f'- {{name: algorithm, key: learner.algorithm, low: {low}, high: {high}}}\n'
+        '- {name: contacts, key: observations.G, low: off, high: on}\n'
+    )
+    out = tmp_path / 'c' / 'plan.csv'
+    plan.main(['--factors', str(tmp_path / 'f.yaml'), '--design', 'full', '--out', str(out)])
+    rows = read_rows(out, Changes.of(None, ['training.precision=auto'], None))
+    assert {row.spec.training.precision for row in rows} == {'float32_fast'}
+    with pytest.raises(ConfigError, match=r"is 'bfloat16', which learner.algorithm .* does not"):
+        read_rows(out, Changes.of(None, ['training.precision=bfloat16'], None))
+
+
 def test_bfloat16_is_refused_before_a_fleet_begins(made, monkeypatch, capsys):
     monkeypatch.setattr(numerics, 'computes_bfloat16', lambda: False)
     assert run_fleet.main(['--plan', str(made), '--set', 'training.precision=bfloat16']) == 2

@@ -20,12 +20,12 @@ training: {evaluation: 2, checkpoint_every: 1}
 
 @pytest.fixture(autouse=True)
 def short_search(monkeypatch, tmp_path):
-    """Stand in for the search of the constant action, which takes minutes."""
+    """Stand in for the searches of walks without feedback, which take minutes."""
     run = learning._python
 
     def python(module: str, *arguments: str) -> float:
-        words = ('zero' if argument == 'constant' else argument for argument in arguments)
-        return run(module, *words)
+        found = ('constant', 'open-loop')
+        return run(module, *('zero' if argument in found else argument for argument in arguments))
 
     monkeypatch.setattr(learning, '_python', python)
     (tmp_path / 'short.yaml').write_text(CONFIG)
@@ -36,11 +36,11 @@ def test_study_leaves_its_table_and_is_not_repeated(tmp_path, capsys, monkeypatc
     arguments = ['--out', str(out), '--config', str(tmp_path / 'short.yaml'), *ARGUMENTS]
     learning.main(arguments)
     table = pd.read_csv(out / 'table.csv')
-    assert list(table['agent']) == ['zero action', 'constant action', 'C']
-    assert list(table['seed'][2:]) == [3]
+    assert list(table['agent']) == ['zero action', 'constant action', 'open-loop gait', 'C']
+    assert (list(table['seed'][3:]), list(table['steps'][3:])) == ([3], [16])
     judged = pd.read_csv(out / 'C_3' / 'evaluation.csv')['episode_return'].mean()
-    assert table['evaluation_return'][2] == pytest.approx(judged)
-    assert 0.1 < table['processor_seconds'][2] < 100.0
+    assert table['evaluation_return'][3] == pytest.approx(judged)
+    assert 0.1 < table['processor_seconds'][3] < 100.0
     assert table['gain'][1] == 0.0
     rewards = table['final_average_reward']
     assert list(table['gain']) == pytest.approx(list(rewards / rewards[1] - 1.0))
@@ -53,3 +53,16 @@ def test_study_leaves_its_table_and_is_not_repeated(tmp_path, capsys, monkeypatc
     monkeypatch.setattr(learning, '_python', fail)
     learning.main(arguments)
     assert capsys.readouterr().out == first
+
+
+def test_configurations_are_compared_side_by_side(tmp_path):
+    (tmp_path / 'ppo.yaml').write_text(
+        'task: {time_limit_steps: 8}\ntraining: {evaluation: 1}\n'
+        'learner: {algorithm: ppo, ppo: {rollout_steps: 8, batch_size: 8, hidden: [8]}}\n'
+    )
+    configs = [str(tmp_path / 'short.yaml'), str(tmp_path / 'ppo.yaml')]
+    learning.main(['--out', str(tmp_path / 'study'), '--config', *configs, *ARGUMENTS])
+    table = pd.read_csv(tmp_path / 'study' / 'table.csv')
+    assert list(table['agent'][3:]) == ['short: C', 'ppo: C']
+    assert table['steps'][3] == table['steps'][4]
+    assert (tmp_path / 'study' / 'ppo_C_3' / 'agent.pt').exists()

@@ -35,15 +35,7 @@ def completed(model: M, problem: Problem, seed: int) -> M:
         model: Made with `_init_setup_model=False`, as the library itself does to load one.
         problem: Sizes.
         seed: Of the networks.
-
-    Raises:
-        ValueError: It cannot compute as the problem asks.
     """
-    if problem.precision == 'bfloat16':
-        raise ValueError(
-            f"training.precision is 'bfloat16', which {type(model).__name__} does not compute "
-            "with; expected 'float32' or 'float32_fast'"
-        )
     model.observation_space = Box(-1.0, 1.0, (problem.observation_size,), np.float32)
     model.action_space = Box(-1.0, 1.0, (problem.action_size,), np.float32)
     model.n_envs = 1
