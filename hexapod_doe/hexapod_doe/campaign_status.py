@@ -15,7 +15,7 @@ from hexapod_doe.campaigns.folder import read_progress, verify_done
 from hexapod_doe.campaigns.next_steps import after_status
 from hexapod_doe.campaigns.overview import overview
 from hexapod_doe.campaigns.page import write_page
-from hexapod_doe.campaigns.progress import Progress, State
+from hexapod_doe.campaigns.progress import Progress
 from hexapod_doe.designs.plan_file import PlanError
 
 _LEAST_WIDTH = 100
@@ -23,7 +23,7 @@ _NAMED = 3
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Return 0 if every run is done, 1 if some are not, 2 if the folder is no campaign."""
+    """Return 0 if the campaign is complete, 1 if it is not, 2 if the folder is none."""
     parser = CommandLine(prog='campaign_status', description=__doc__)
     parser.add_argument('directory', type=folder, help=f'folder with {PLAN_FILE}')
     parser.add_argument('--page', action='store_true', help='write the HTML page anew, too')
@@ -50,7 +50,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             print(f'{checked} bags read back: each as it was recorded')
         if lines := after_status(args.directory, progress):
             print('\n'.join(['', 'next:', *(f'  {line}' for line in lines)]))
-    return 0 if len(progress.having(State.DONE)) == len(progress.runs) else 1
+    return 0 if progress.complete else 1
 
 
 def _read(directory: Path) -> Progress:

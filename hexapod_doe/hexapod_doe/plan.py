@@ -18,6 +18,7 @@ from hexapod_doe.campaigns.forecast import is_foretold, seconds_of
 from hexapod_doe.campaigns.next_steps import CONFIRM_FOLDER, after_confirm
 from hexapod_doe.campaigns.plan_guard import check_free
 from hexapod_doe.campaigns.progress import Progress
+from hexapod_doe.campaigns.stop_rule import LEAST_ROUNDS
 from hexapod_doe.designs.aliases import (
     aberration_note,
     alias_sets,
@@ -40,6 +41,7 @@ from hexapod_doe.designs.plan_types import Confirmation, Plan
 from hexapod_doe.designs.planner import Budget, describe, options, propose
 from hexapod_doe.designs.power import power, smallest_effect
 from hexapod_doe.designs.power_simulation import RunModel, simulate_power
+from hexapod_doe.designs.stopping import with_rule
 from hexapod_doe.designs.terms import terms_up_to
 
 _HOUR_S = 3600.0
@@ -66,6 +68,7 @@ def _make(args: argparse.Namespace) -> None:
         args.replicates,
         args.seed,
         common_seeds=args.common_seeds,
+        in_turns=args.in_turns,
         blocks=blocks,
         confirmation=Confirmation(args.confirm_runs, args.confirm_level),
         treatments=treatments,
@@ -188,9 +191,10 @@ def _hours(args: argparse.Namespace) -> None:
     count = len(treatments.factors)
     found = options(Budget(args.hours, seconds, args.workers), count, episodes)
     chosen = propose(found)
+    ruled = with_rule(chosen, args.sigma, args.stop_when, LEAST_ROUNDS)
     print(f'A run of {episodes} episodes: {seconds * episodes:.3g} s of a core, {source}.')
     print('Proposed:')
-    print(describe(chosen, episodes, args.sigma))
+    print(f'{describe(chosen, episodes, args.sigma)}{ruled}')
     for option in found:
         if option is not chosen:
             print('\nInstead:')

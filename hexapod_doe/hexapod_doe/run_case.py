@@ -22,6 +22,7 @@ from hexapod_doe.campaigns.folder import read_progress
 from hexapod_doe.campaigns.page import write_page
 from hexapod_doe.campaigns.plan_copy import keep_config, place_plan
 from hexapod_doe.campaigns.row import Row, read_rows
+from hexapod_doe.campaigns.stop_rule import stopped_text
 from hexapod_doe.designs.plan_file import PlanError
 
 
@@ -44,6 +45,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
     if state.done:
         print(f'{row.run_id} is done: {row.bag}')
+        return 0
+    if text := stopped_text(plan.resolve().parent):
+        print(f'{row.run_id} is not needed: {text}; run_fleet --go-on trains it')
         return 0
     if state.damage:
         print(f'run_case: {row.run_id} is trained anew: {state.damage}', file=sys.stderr)

@@ -23,8 +23,9 @@ from hexapod_agent.fleet.stacked import StackedLearners
 from hexapod_agent.learning.numerics import check_precision
 from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_agent.specification.spec_text import add_spec_options
-from hexapod_sim.command_line import CommandLine, file, folder, one_line, whole
+from hexapod_sim.command_line import CommandLine, file, folder, number, one_line, whole
 
+from hexapod_doe.analysis.stop_look import look_at
 from hexapod_doe.campaigns.campaign import Campaign
 from hexapod_doe.campaigns.campaign_lock import campaign_lock
 from hexapod_doe.campaigns.changes import Changes
@@ -32,6 +33,7 @@ from hexapod_doe.campaigns.fleet_campaign import FleetCampaign
 from hexapod_doe.campaigns.fleet_processes import train_in_processes
 from hexapod_doe.campaigns.forecast import forecast
 from hexapod_doe.campaigns.plan_copy import keep_config, place_plan
+from hexapod_doe.campaigns.stop_rule import StopRule, go_on
 from hexapod_doe.cores import usable_cores
 
 _CORES = usable_cores()
@@ -98,13 +100,15 @@ def _run(args: argparse.Namespace) -> int:
     directory = plan.resolve().parent
     changes = Changes.of(args.config, args.set, args.episodes)
     with campaign_lock(directory, shared=True):
+        if args.go_on:
+            go_on(directory)
         campaign = Campaign.open(plan, attempts=1, changes=changes)
         campaign.check_own()
         campaign.forget_cuts()
         for run_id, damage in campaign.damaged.items():
             print(f'run_fleet: {run_id} is trained anew: {damage}', file=sys.stderr)
         campaign.check_writable()
-        due = {row.run_id: row.spec for row in campaign.due}
+        due = {} if campaign.stopped else {row.run_id: row.spec for row in campaign.due}
         if is_cpu(args.device):
             for spec in due.values():
                 check_precision(spec)
@@ -122,26 +126,31 @@ def _run(args: argparse.Namespace) -> int:
         elif due:
             _train(campaign, due, args)
     print(f'{len(campaign.done)} of {len(campaign.rows)} runs are in {campaign.directory}')
-    return 0 if len(campaign.done) == len(campaign.rows) else 1
+    if campaign.stopped:
+        print(f'{campaign.stopped}; --go-on trains the others')
+    return 0 if campaign.over else 1
 
 
 def _options(plan: Path, args: argparse.Namespace, count: int, due: int) -> list[str]:
     """Return the command line of one of several processes."""
-    names = ('episodes', 'config', 'slots', 'threads', 'device', 'began')
+    names = ('episodes', 'config', 'slots', 'threads', 'device', 'began', 'stop_when')
     given = {'plan': plan} | {name: getattr(args, name) for name in names}
     if not is_cpu(args.device):  # its rows and the cores are shared out evenly
         given['slots'] = args.slots or math.ceil(due / count)
         given['threads'] = args.threads or max(_CORES // count, 1)
     options = [(name, value) for name, value in given.items() if value is not None]
     options += [('set', setting) for setting in args.set]
-    return [text for name, value in options for text in (f'--{name}', str(value))]
+    words = [(f'--{name.replace("_", "-")}', str(value)) for name, value in options]
+    return [word for pair in words for word in pair]
 
 
 def _train(campaign: Campaign, due: Mapping[str, RunSpec], args: argparse.Namespace) -> None:
     """Train rows of such specifications in this process, one group after the other."""
     on_cpu = is_cpu(args.device)
     threads = args.threads or (1 if on_cpu else _CORES)
-    with Pool(threads) as pool, FleetCampaign(campaign, args.device, args.began) as rows:
+    cases = len({row.levels for row in campaign.rows})
+    rule = StopRule(campaign.directory, cases, args.stop_when, look_at)
+    with Pool(threads) as pool, FleetCampaign(campaign, args.device, args.began, rule) as rows:
         for group in learning_alike(due, args.device):
             specs = [due[run_id] for run_id in group]
             slots = min(args.slots or (threads if on_cpu else len(due)), len(group))
@@ -171,6 +180,15 @@ def _parser() -> CommandLine:
         '--threads', type=whole(ge=1),
         help='of a process; default one on the CPU, its share of the cores on another device',
     )  # fmt: skip
+    parser.add_argument(
+        '--stop-when', type=number(ge=0), default=0.0, metavar='D',
+        help='begin no new run once the choice is expected to lose less than D, in units of the '
+        'response; asked after each round of as many runs as there are cases, from the third on '
+        '(default 0: never)',
+    )  # fmt: skip
+    parser.add_argument(
+        '--go-on', action='store_true', help='with a campaign that its rule has ended'
+    )
     parser.add_argument(  # what this command tells its processes
         '--began', type=datetime.fromisoformat, default=datetime.now(UTC), help=argparse.SUPPRESS
     )

@@ -35,12 +35,13 @@ _RESULTS, _JUDGED = (
 )
 
 
-def plan_campaign(folder: Path, design: str, replicates: int) -> Path:
+def plan_campaign(folder: Path, design: str, replicates: int, *, in_turns: bool = False) -> Path:
     """Write the plan of a campaign of short trainings, and return its file."""
     base = RunSpec.load(None, [f'training.episodes={EPISODES}', 'training.evaluation=1'])
     plan = make_plan(
         fraction(design),
         replicates,
+        in_turns=in_turns,
         confirmation=Confirmation(runs=2),
         treatments=Treatments(default_factors('ABCDEFG'), base),
     )
@@ -48,10 +49,10 @@ def plan_campaign(folder: Path, design: str, replicates: int) -> Path:
     return folder / 'plan.csv'
 
 
-def finish(plan: Path, truth: Truth, seed: int) -> None:
-    """Write a whole bag for each row of a plan."""
+def finish(plan: Path, truth: Truth, seed: int, rows: int | None = None) -> None:
+    """Write a whole bag for each row of a plan, or for the first ones in its order."""
     rng = np.random.default_rng(seed)
-    for row in read_rows(plan):
+    for row in read_rows(plan)[:rows]:
         levels = pd.DataFrame([row.levels], columns=list('ABCDEFG'))
         _write(row, float(truth.simulate(levels, rng)[0]))
 

@@ -12,6 +12,7 @@ are drawn: seven of sensors, three of interactions, failures that depend on two 
 
 import numpy as np
 import pandas as pd
+from hexapod_doe.campaigns.stop_rule import LEAST_ROUNDS
 from hexapod_doe.choosing.choice import decide, expected_loss
 from hexapod_doe.designs.design import fraction
 from hexapod_doe.designs.terms import terms_up_to
@@ -20,10 +21,9 @@ from hexapod_doe.records.options import Options
 from hexapod_sim.command_line import CommandLine, whole
 from simulated import Truth, repeated_levels, table_of
 
-DELTAS = (10.0, 20.0, 30.0)
+DELTAS = (5.0, 10.0, 20.0, 30.0)
 MOST = 10
-LEAST = 2
-"""Replicates: of a whole campaign, and before the first look."""
+"""Replicates of a whole campaign."""
 _FAILING = {0.2: -1.53, 0.02: -4.1}
 """Constant of the log-odds, by the share that fails."""
 _MAINS, _PAIRS = 25.0, 12.0
@@ -45,7 +45,7 @@ def path_of(truth: Truth, rng: np.random.Generator, least_delta: float) -> pd.Da
     mean = truth.mean(corners(list(design.factors)))
     response = truth.simulate(repeated_levels(design, MOST), rng).reshape(design.cases, MOST)
     rows = []
-    for replicates in range(LEAST, MOST + 1):
+    for replicates in range(LEAST_ROUNDS, MOST + 1):
         levels = repeated_levels(design, replicates)
         outlook = decide(table_of(levels, response[:, :replicates].ravel()), Options())
         chosen = outlook.labels.index(outlook.ranking[0])

@@ -16,6 +16,7 @@ from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_doe.bags.cuts import forget_cuts_of_closed
 from hexapod_doe.campaigns.changes import Changes
 from hexapod_doe.campaigns.row import RUNS_FOLDER, Row, read_rows
+from hexapod_doe.campaigns.stop_rule import stopped_text
 from hexapod_doe.errors import CampaignError
 
 PLAN_FILE = 'plan.csv'
@@ -46,6 +47,8 @@ class Campaign:
     """Rows at whose place there is the whole bag of another run, and how that differs."""
     damaged: dict[str, str] = field(default_factory=dict)
     """Rows whose bag was damaged when the campaign was opened, and how; they are due again."""
+    stopped: str = ''
+    """How its stop rule ended it; empty if it did not."""
     tried: dict[str, set[str]] = field(default_factory=dict)
     """Workers on which a run failed or got stuck, by run id."""
 
@@ -62,9 +65,11 @@ class Campaign:
             FileNotFoundError: there is no such plan.
             hexapod_doe.designs.plan_file.PlanError: the file is not a plan.
             hexapod_agent.specification.run_spec.ConfigError: it cannot be changed so.
+            ValueError: what its folder holds of its stop rule is no such record.
         """
         rows = read_rows(plan, changes)
         campaign = cls(plan.resolve().parent, rows, attempts, changes is not None)
+        campaign.stopped = stopped_text(campaign.directory)
         states = {row.run_id: row.bag_state(campaign.known) for row in rows}
         campaign.done = {run_id for run_id, state in states.items() if state.done}
         campaign.others = {run_id: state.other for run_id, state in states.items() if state.other}
@@ -118,8 +123,14 @@ class Campaign:
 
     @property
     def finished(self) -> bool:
-        """Whether no row is due or running."""
-        return not self.running and len({*self.done, *self.failed}) == len(self.rows)
+        """Whether no row is running, and none is due or its rule has ended it."""
+        every = len({*self.done, *self.failed}) == len(self.rows)
+        return not self.running and (every or bool(self.stopped))
+
+    @property
+    def over(self) -> bool:
+        """Whether every row is done, or the rule has ended it."""
+        return bool(self.stopped) or len(self.done) == len(self.rows)
 
     def take(
         self, worker: str, present: Collection[str] = (), among: Collection[str] | None = None
@@ -133,6 +144,8 @@ class Campaign:
             present: all workers that there are.
             among: run ids of the rows that it can take; None for all.
         """
+        if self.stopped:
+            return None
         gone = {*self.done, *self.running, *self.failed}
         if among is not None:
             gone |= {row.run_id for row in self.rows} - set(among)

@@ -19,6 +19,7 @@ from hexapod_doe.campaigns.failures import FailureLog, read_failures
 from hexapod_doe.campaigns.fleet_row import FleetRow
 from hexapod_doe.campaigns.page import PageWriter
 from hexapod_doe.campaigns.row import Row
+from hexapod_doe.campaigns.stop_rule import StopRule, stopped_text
 from hexapod_doe.errors import CampaignError
 
 _NAME = 'fleet'
@@ -32,6 +33,7 @@ class FleetCampaign:
         campaign: Campaign,
         device: str,
         began: datetime,
+        rule: StopRule,
     ) -> None:
         """Begin with the rows that are due.
 
@@ -40,8 +42,9 @@ class FleetCampaign:
             device: where the networks are.
             began: when the command was given; what failed since, in whatever process, is not
                 tried again.
+            rule: that may end the campaign before its plan is done.
         """
-        self._campaign, self._device = campaign, device
+        self._campaign, self._device, self._rule = campaign, device, rule
         self._dashboard = Dashboard(campaign)
         self._page = PageWriter(campaign.directory, self._dashboard.log)
         self._locks: dict[str, ExitStack] = {}
@@ -81,6 +84,7 @@ class FleetCampaign:
 
     def _next(self, among: Collection[str]) -> Row | None:
         elsewhere = []
+        self._ask_the_rule()
         while (row := self._campaign.take(_NAME, among=among)) is not None:
             if not self._lock(row):
                 elsewhere.append(row)
@@ -92,6 +96,16 @@ class FleetCampaign:
         for each in elsewhere:  # due again, should that process leave it
             self._campaign.release(each)
         return row
+
+    def _ask_the_rule(self) -> None:
+        """Look whether the campaign is to end, by what this process or another one finds."""
+        campaign = self._campaign
+        if campaign.stopped:
+            return
+        text = self._rule.look() if self._rule.due() else ''
+        campaign.stopped = text or stopped_text(campaign.directory)
+        if campaign.stopped:
+            self.log(campaign.stopped)
 
     def _in_vain(self, row: Row) -> str:
         """Return why the row failed since the command was given, '' if it did not."""

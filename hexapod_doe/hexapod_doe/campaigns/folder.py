@@ -21,6 +21,7 @@ from hexapod_doe.campaigns.campaign import PLAN_FILE
 from hexapod_doe.campaigns.failures import read_failures
 from hexapod_doe.campaigns.progress import Progress, Run, State
 from hexapod_doe.campaigns.row import Row, read_rows
+from hexapod_doe.campaigns.stop_rule import stopped_text
 from hexapod_doe.errors import BagError, LockingError
 from hexapod_doe.file_lock import lock
 
@@ -43,7 +44,8 @@ def read_progress(directory: Path, known: Mapping[str, Run] | None = None) -> Pr
     runs = [had.get(row.run_id) or read_row(row) for row in rows]
     _add_failures(runs, read_failures(directory))
     legend = rows[0].treatments.legend
-    return Progress(directory.resolve().name, {run.run_id: run for run in runs}, legend)
+    named = {run.run_id: run for run in runs}
+    return Progress(directory.resolve().name, named, legend, stopped_text(directory))
 
 
 def _add_failures(runs: Sequence[Run], reasons: Mapping[str, Sequence[str]]) -> None:

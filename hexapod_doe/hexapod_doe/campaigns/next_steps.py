@@ -25,7 +25,7 @@ def after_status(folder: Path, progress: Progress) -> list[str]:
     """Return the lines to type after a look at a campaign; none while it runs."""
     if progress.having(State.RUNNING):
         return []
-    if len(progress.having(State.DONE)) < len(progress.runs):
+    if not progress.complete:
         return (
             [] if progress.having(State.OTHER) else [_train(folder, progress, folder / PLAN_FILE)]
         )
@@ -47,7 +47,7 @@ def after_analysis(folder: Path, sets: Sequence[str], again: str) -> list[str]:
     if not (folder / PLAN_FILE).is_file():
         return []
     progress = read_progress(folder)
-    if len(progress.having(State.DONE)) < len(progress.runs):
+    if not progress.complete:
         return [*after_status(folder, progress), again]
     if _confirm_plan(folder).is_file():
         left = _confirming(folder, progress)
@@ -67,9 +67,7 @@ def _confirming(folder: Path, progress: Progress) -> list[str]:
     plan = _confirm_plan(folder)
     if not plan.is_file():
         return []
-    found = read_progress(plan.parent)
-    done = len(found.having(State.DONE)) == len(found.runs)
-    return [] if done else [_train(folder, progress, plan)]
+    return [] if read_progress(plan.parent).complete else [_train(folder, progress, plan)]
 
 
 def _confirm_plan(folder: Path) -> Path:

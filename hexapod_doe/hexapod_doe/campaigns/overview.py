@@ -38,7 +38,8 @@ def summary(progress: Progress) -> str:
     counts = {state: len(progress.having(state)) for state in State}
     parts = [f'{len(progress.runs)} runs: {counts[State.DONE]} done']
     parts += [f'{n} {state}' for state, n in counts.items() if n and state is not State.DONE]
-    return f'{", ".join(parts)}; {pace(progress)}'
+    end = progress.stopped if progress.complete else ''
+    return f'{", ".join(parts)}; {end or pace(progress)}'
 
 
 def pace(progress: Progress) -> str:

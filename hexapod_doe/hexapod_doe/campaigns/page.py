@@ -60,7 +60,7 @@ def render(progress: Progress) -> str:
         width=_WIDTH,
         height=_HEIGHT,
         left=duration(progress.seconds_left),
-        reload=_RELOAD_S if open_runs else 0,
+        reload=_RELOAD_S if open_runs and not progress.complete else 0,
         written=datetime.now(UTC),
     )
 

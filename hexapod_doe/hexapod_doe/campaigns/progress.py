@@ -88,6 +88,14 @@ class Progress:
     runs: dict[str, Run]
     legend: tuple[str, ...] = ()
     """What the letters of the cases stand for; empty for sensors."""
+    stopped: str = ''
+    """How its stop rule ended it; empty if it did not."""
+
+    @property
+    def complete(self) -> bool:
+        """Whether all its runs are done, or its rule has ended it and no run is under way."""
+        by_rule = bool(self.stopped) and not self.having(State.RUNNING)
+        return by_rule or len(self.having(State.DONE)) == len(self.runs)
 
     @property
     def heading(self) -> str:
@@ -135,7 +143,7 @@ class Progress:
     def seconds_left(self) -> float:
         """Expected time to the end at the present rate; NaN while nothing is known."""
         longest = max((run.planned for run in self.runs.values()), default=0)
-        open_runs = self.having(*OPEN)
+        open_runs = self.having(*((State.RUNNING,) if self.stopped else OPEN))
         left = sum((run.planned or longest) - len(run.returns) for run in open_runs)
         if not open_runs:
             return 0.0

@@ -59,6 +59,12 @@ def _add_make(parser: CommandLine) -> None:
     parser.add_argument(
         '--common-seeds', action='store_true', help='the same seeds in every case, as blocks'
     )
+    parser.add_argument(
+        '--in-turns',
+        action='store_true',
+        help='run one replicate of all cases after the other, each in random order, so that a '
+        'stop rule may end the campaign between them (default: all rows in one random order)',
+    )
     parser.add_argument('--blocks', metavar='WORDS', help='block generators, such as ABE,BCG')
     parser.add_argument(
         '--confirm-runs',
@@ -185,6 +191,13 @@ def _add_hours(parser: CommandLine) -> None:
     )
     _add_factors(parser)
     parser.add_argument('--sigma', type=number(gt=0), metavar='X', help='SD of one run, if known')
+    parser.add_argument(
+        '--stop-when',
+        type=number(gt=0),
+        metavar='D',
+        help='say also how many runs a campaign with this stop rule is expected to take; in the '
+        'unit of --sigma, which it needs',
+    )
 
 
 def _add_design(parser: CommandLine) -> None:

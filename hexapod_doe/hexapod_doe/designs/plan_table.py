@@ -26,6 +26,7 @@ def make_plan(
     seed: int = 1,
     *,
     common_seeds: bool = False,
+    in_turns: bool = False,
     blocks: Sequence[str] = (),
     confirmation: Confirmation | None = None,
     treatments: Treatments | None = None,
@@ -37,6 +38,8 @@ def make_plan(
         replicates: Training runs of each case.
         seed: Seed of the run order and of the runs' seeds.
         common_seeds: Whether replicate r of every case has the same seed (seeds as blocks).
+        in_turns: Whether one replicate of all cases is run after the other, as a stop rule asks
+            for; else all rows are in one random order.
         blocks: Block generators; blocks run one after the other.
         confirmation: The rule stored with the plan; its seeds are drawn here.
         treatments: What the columns stand for; sensors if None.
@@ -57,6 +60,7 @@ def make_plan(
             replicates=replicates,
             seed=seed,
             common_seeds=common_seeds,
+            in_turns=in_turns,
             blocks=tuple(blocks),
             confirmation=confirmation or Confirmation(),
         ),
@@ -85,6 +89,7 @@ def follow_up(plan: Plan, levels: np.ndarray, how: str, replicates: int, seed: i
         replicates=replicates,
         seed=seed,
         common_seeds=before is not None and before.common_seeds,
+        in_turns=before is not None and before.in_turns,
         blocks=_kept_blocks(levels, plan.factors, before.blocks if before else ()),
         follows=how,
         predecessor=plan.fingerprint,
@@ -115,6 +120,11 @@ def _plan(levels: np.ndarray, settings: PlanSettings, before: pd.DataFrame | Non
     """Return the plan of any cases, numbered on and seeded apart from the rows before them."""
     if settings.replicates < 1:
         raise ValueError(f'{settings.replicates} replicates: expected at least 1')
+    if settings.in_turns and settings.blocks:
+        raise ValueError(
+            'in_turns and blocks exclude each other, as each says what is run after the other: '
+            'expected one of them'
+        )
     factors, treatments = settings.treatments.letters, settings.treatments
     if not treatments.default:
         for case in levels:  # every one of them can be run
@@ -132,7 +142,7 @@ def _plan(levels: np.ndarray, settings: PlanSettings, before: pd.DataFrame | Non
         blocks = blocks + (int(before['block'].max()) if 'block' in before else 1)
     columns: dict[str, Any] = {
         'StdOrder': first_row + np.arange(len(number)),
-        'RunOrder': _run_order(blocks, order_rng),
+        'RunOrder': _run_order(blocks, replicate if settings.in_turns else None, order_rng),
         'case': first_case + number,
         'replicate': 1 + replicate,
         **({'block': blocks} if settings.block_column == 'block' else {}),
@@ -169,11 +179,14 @@ def _seeds(
     return np.broadcast_to(column, (settings.replicates, cases)), fresh[count:]
 
 
-def _run_order(block: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-    """Return 1..N: rows in random order, blocks one after the other in random order."""
+def _run_order(block: np.ndarray, turn: np.ndarray | None, rng: np.random.Generator) -> np.ndarray:
+    """Return 1..N: rows in random order, blocks one after the other in random order.
+
+    Turns, if there are any, come one after the other by their numbers.
+    """
     position = rng.permutation(len(block))
     rank_of_block = rng.permutation(block.max() + 1)
-    order = np.lexsort((position, rank_of_block[block]))
+    order = np.lexsort((position, rank_of_block[block] if turn is None else turn))
     result = np.empty(len(block), dtype=int)
     result[order] = 1 + np.arange(len(block))
     return result

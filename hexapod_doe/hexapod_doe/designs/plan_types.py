@@ -44,7 +44,7 @@ class Confirmation:
 
 _ORDER = (
     'design', 'factors', 'generators', 'defining_relation', 'resolution', 'cases', 'replicates',
-    'seed', 'common_seeds', 'blocks', 'follows', 'base', 'confirms', 'confirmation',
+    'seed', 'common_seeds', 'in_turns', 'blocks', 'follows', 'base', 'confirms', 'confirmation',
 )  # fmt: skip
 """How a file lists the settings of a plan."""
 
@@ -62,6 +62,8 @@ class PlanSettings:
     replicates: int
     seed: int
     common_seeds: bool = False
+    in_turns: bool = False
+    """Whether one replicate of all cases is run after the other."""
     blocks: tuple[str, ...] = ()
     follows: str = ''
     """What an augmenting plan adds to, and how; empty for a first plan."""

@@ -16,10 +16,10 @@ from hexapod_agent.nodes.action_names import TRAIN_RUN
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import CampaignStatus
 from hexapod_node.actions import ActionClient
-from hexapod_node.coroutines import sleep, start
+from hexapod_node.coroutines import in_thread, sleep, start
 from hexapod_node.diagnostics import Diagnostics, Health
 from hexapod_node.node import Node
-from hexapod_node.parameters import Parameter, declare
+from hexapod_node.parameters import declare
 from hexapod_node.qos import LATCHED
 from hexapod_node.root import root_arguments
 from hexapod_node.shared_memory import free_abandoned
@@ -28,6 +28,7 @@ from hexapod_node.timers import call_every
 from rclpy.action import get_action_names_and_types
 from rclpy.task import Future
 
+from hexapod_doe.analysis.stop_look import look_at
 from hexapod_doe.campaigns.campaign import Campaign
 from hexapod_doe.campaigns.campaign_lock import campaign_lock
 from hexapod_doe.campaigns.changes import Changes
@@ -38,58 +39,16 @@ from hexapod_doe.campaigns.local_workers import LocalWorkers
 from hexapod_doe.campaigns.page import PageWriter
 from hexapod_doe.campaigns.plan_copy import keep_config
 from hexapod_doe.campaigns.row import RUNS_FOLDER, Row
+from hexapod_doe.campaigns.stop_rule import StopRule, go_on
 from hexapod_doe.cores import usable_cores
 from hexapod_doe.errors import CampaignError
+from hexapod_doe.nodes.manager_parameters import PARAMETERS
 from hexapod_doe.nodes.train_goal import train_goal
 from hexapod_doe.nodes.worker_client import Ended, WorkerBusyError, WorkerClient, WorkerLostError
 
 _ACTION = 'hexapod_interfaces/action/TrainRun'
 _TICK_S = 0.2
 _BUSY_S = 2.0
-
-PARAMETERS = (
-    Parameter('plan', '', 'plan.csv of the campaign; its bags lie beside it, under runs/'),
-    Parameter(
-        'episodes',
-        0,
-        'episodes of a training; 0: `training.episodes` of the specification',
-        range=(0, 1_000_000),
-    ),
-    Parameter(
-        'config', '', "file of changes to the specification of the plan's runs; empty for none"
-    ),
-    Parameter('set', [''], "further changes, each as 'key=value'"),
-    Parameter(
-        'record_every',
-        100,
-        'every how many episodes all topics are recorded; 0 for never',
-        range=(0, 1_000_000),
-    ),
-    Parameter(
-        'local_workers', -1, 'workers to start on this machine; -1: one per core', range=(-1, 256)
-    ),
-    Parameter(
-        'worker_command',
-        'ros2 run hexapod_bringup worker_node --ros-args -r __ns:=/{name} {files}',
-        'what starts a local worker; {name} stands for its namespace, {files} for the parameters '
-        'that let it use the folder of the campaign',
-    ),
-    Parameter(
-        'worker_timeout',
-        60.0,
-        'longest wait for a worker while there is none',
-        unit='s',
-        range=(1.0, 86400.0),
-    ),
-    Parameter(
-        'stall_timeout',
-        60.0,
-        'longest time without a sign of life of a worker, before its row goes to another',
-        unit='s',
-        range=(2.0, 86400.0),
-    ),
-    Parameter('attempts', 3, 'how often a failing row is tried', range=(1, 100)),
-)
 
 
 class ManagerNode(Node):
@@ -103,11 +62,18 @@ class ManagerNode(Node):
             raise FileNotFoundError(f"plan '{plan}': no such file, expected a plan.csv of `plan`")
         self._held = ExitStack()
         self._held.enter_context(campaign_lock(plan.resolve().parent))
+        if self._parameter('go_on'):
+            go_on(plan.resolve().parent)
         changes = Changes.of(*(self._parameter(name) for name in ('config', 'set', 'episodes')))
         self._campaign = Campaign.open(plan, self._parameter('attempts'), changes)
         self._campaign.check_own()
         self._campaign.forget_cuts()
         keep_config(plan.resolve(), self._campaign.base)
+        cases = len({row.levels for row in self._campaign.rows})
+        self._rule = StopRule(
+            self._campaign.directory, cases, self._parameter('stop_when'), look_at
+        )
+        self._looking = False
         self._failures = FailureLog(self._campaign.directory)
         self._failures.clear()
         self._workers: dict[str, WorkerClient] = {}
@@ -122,7 +88,7 @@ class ManagerNode(Node):
         self._page = PageWriter(self._campaign.directory, self._dashboard.log)
         self._status_publisher = self.create_publisher(CampaignStatus, '~/status', LATCHED)
         count = 0 if self._campaign.finished else self._worker_count()
-        if due := self._campaign.due:
+        if not self._campaign.finished and (due := self._campaign.due):
             self._dashboard.log(forecast([row.spec for row in due], count))
         files = root_arguments((self._campaign.directory / RUNS_FOLDER).resolve())
         logs = self._campaign.directory / 'logs'
@@ -154,9 +120,16 @@ class ManagerNode(Node):
             if worker.name in self._buried or worker.lost():
                 worker.gone = 'its process is gone'
                 del self._workers[worker.name]
-        if self._campaign.finished:
+        if not (self._looking or self._campaign.stopped) and self._rule.due():
+            self._looking = True
+            start(self._look()).add_done_callback(self._on_served)
+        if self._campaign.finished and not self._looking:
             self.exit_status = self._close()
-        elif self._campaign.running or any(worker.ready for worker in self._workers.values()):
+        elif (
+            self._looking
+            or self._campaign.running
+            or any(worker.ready for worker in self._workers.values())
+        ):
             self._alone_since = time.monotonic()
         elif time.monotonic() - self._alone_since > self._parameter('worker_timeout'):
             self._dashboard.log(
@@ -165,6 +138,13 @@ class ManagerNode(Node):
                 'from `ros2 launch hexapod_bringup worker.launch.xml`'
             )
             self.exit_status = 1
+
+    async def _look(self) -> None:
+        """Ask the stop rule, while no new row is begun."""
+        try:
+            self._campaign.stopped = await in_thread(self, self._rule.look)
+        finally:
+            self._looking = False
 
     def _discover(self) -> None:
         for action, types in get_action_names_and_types(self):
@@ -189,7 +169,8 @@ class ManagerNode(Node):
     async def _serve(self, worker: WorkerClient) -> None:
         """Give a worker one row after another, for as long as it is there."""
         while not worker.gone:
-            row = self._campaign.take(worker.name, self._workers) if worker.ready else None
+            ready = worker.ready and not self._looking
+            row = self._campaign.take(worker.name, self._workers) if ready else None
             if row is None or self.exit_status is not None:
                 await sleep(self, _TICK_S)
                 continue
@@ -243,6 +224,8 @@ class ManagerNode(Node):
         self._dashboard.log(
             f'{len(campaign.done)} of {len(campaign.rows)} runs are in {campaign.directory}'
         )
+        if campaign.stopped:
+            self._dashboard.log(f'{campaign.stopped}; go_on:=true trains the others')
         return 1 if campaign.failed else 0
 
     def _publish_status(self) -> None:

@@ -54,7 +54,9 @@ class Part:
 
     @property
     def left(self) -> int:
-        """Runs that are not done."""
+        """Runs that are not done; none once its rule has ended the campaign."""
+        if self.progress.complete:
+            return 0
         return len(self.progress.runs) - len(self.progress.having(State.DONE))
 
     @property

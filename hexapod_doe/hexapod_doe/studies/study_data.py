@@ -13,6 +13,7 @@ from hexapod_doe.analysis.analysis import analyse
 from hexapod_doe.bags.bag_state import sound_metadata
 from hexapod_doe.campaigns.campaign import PLAN_FILE
 from hexapod_doe.campaigns.row import read_rows
+from hexapod_doe.campaigns.stop_rule import stopped_text
 from hexapod_doe.modelling.pipeline import Pipeline, run
 from hexapod_doe.records.options import Options
 from hexapod_doe.records.results import Analysis
@@ -84,10 +85,10 @@ def read_study(folder: Path) -> Study:
     for plan in plans:
         rows = read_rows(plan)
         done = [row for row in rows if row.bag_state().done]
-        if len(done) < len(rows):
+        if len(done) < len(rows) and not stopped_text(plan.parent):
             left_out.append(f'{plan.parent.name} ({len(done)} of {len(rows)} runs)')
             continue
-        made = pd.DataFrame([_made(row.bag) for row in rows])
+        made = pd.DataFrame([_made(row.bag) for row in done])
         found[plan.parent.name] = _campaign(plan.parent, made)
     return Study(found, tuple(left_out))
 
