@@ -32,7 +32,8 @@ def test_the_estimate_adds_up(study: Path) -> None:
     text = estimate(parts_of(study), workers=2)
     one = parts_of(study)[0].seconds_per_run
     spec = RunSpec.load()
-    assert one == pytest.approx(spec.training.episodes * spec.task.time_limit_steps * 0.0037)
+    episodes = spec.training.episodes + 0.1 * spec.training.evaluation  # which has no updates
+    assert one == pytest.approx(episodes * spec.task.time_limit_steps * 0.0037)
     assert f'{study}/main: 32 of 32 runs left, about {32 * one / 7200:.1f} h' in text
     assert text.endswith(f'about {4 * 32 * one / 7200:.1f} h in all with 2 workers')
 
@@ -43,8 +44,9 @@ def test_fewer_updates_take_less_time(tmp_path: Path) -> None:
     for name, options in (('swift', ['--config', str(swift)]), ('article', [])):
         main(['--replicates', '1', '--out', str(tmp_path / name / 'plan.csv'), *options])
     article, cheap = parts_of(tmp_path)
-    per_episode = cheap.seconds_per_run / 140, article.seconds_per_run / 1000
-    assert per_episode[0] / per_episode[1] == pytest.approx(0.1 + 0.9 / 8, rel=1e-6)
+    # 140 episodes and 1000, and 20 without updates.
+    expected = (140 * (0.1 + 0.9 / 8) + 2) / (1000 + 2)
+    assert cheap.seconds_per_run / article.seconds_per_run == pytest.approx(expected, rel=1e-6)
 
 
 def test_each_campaign_has_its_turn_on_live_workers(
