@@ -26,7 +26,7 @@ def agent(make_trainer, tmp_path) -> Path:
         (evaluate, ['--seed', '-1'], "--seed: '-1', expected a whole number from 0"),
         (evaluate, ['--json', 'no/a.json'], "--json: 'no/a.json': there is no folder 'no'"),
         (evaluate, ['--json', '.'], "--json: '.' is a folder"),
-        (evaluate, ['--config', 'a.yaml'], '--config: a CHECKPOINT has its own'),
+        (evaluate, ['--config', 'a.yaml'], "config file 'a.yaml' not found"),
         (film, ['--seconds', 'nan'], "--seconds: 'nan', expected a number from 0.05 to 600"),
         (film, ['--seconds', '0'], "--seconds: '0', expected a number"),
         (film, ['--seconds', 'inf'], "--seconds: 'inf', expected a number"),
