@@ -15,6 +15,7 @@ pytestmark = pytest.mark.system
 MANAGER = 'ros2 run hexapod_doe manager_node --ros-args -p local_workers:=0 -p worker_timeout:=5.0'
 
 
+@pytest.mark.timeout(900)
 def test_a_campaign_ends_by_its_rule(shell) -> None:
     folder: Path = shell.directory / 'campaign'
     plan = plan_campaign(folder, 'eighth', 4, in_turns=True)
