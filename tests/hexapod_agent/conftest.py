@@ -29,6 +29,7 @@ def small_config() -> RunSpec:
 def switched_config(small_config) -> RunSpec:
     """Small, with every switch of the learner on."""
     changes = {
+        'actor': {'waits': 1},
         'ddpg': {'update_ratio': 0.5, 'n_step': 3},
         'training': {'episodes': 4, 'final_rate': 0.2},
     }

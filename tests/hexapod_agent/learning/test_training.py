@@ -93,6 +93,22 @@ def test_a_falling_rate_moves_the_weights_less(small_config):
     assert moved[1] < 1e-6 * moved[0]
 
 
+def test_an_actor_waits_for_the_critic_and_then_learns(small_config):
+    config = small_config.changed({'actor': {'waits': 1}}, 'a test')
+    trainer = Trainer(config.observing(''), 1)
+    env = HexapodLine('', trainer.config)
+    networks = trainer.learner.networks
+    parts = (networks.actor_parameters, networks.critic_parameters)
+    moved = []
+    for _ in range(3):
+        before = [parameters.flat.clone() for parameters in parts]
+        train_episode(env, trainer)
+        after = [parameters.flat for parameters in parts]
+        moved.append([not torch.equal(*pair) for pair in zip(before, after, strict=True)])
+    # The critic has its first updates in the first episode; the actor follows at the next one.
+    assert moved == [[False, True], [True, True], [True, True]]
+
+
 def test_episodes_shorter_than_a_group_are_refused():
     config = RunSpec.from_mapping({'task': {'time_limit_steps': 20}}, 'a test')
     with pytest.raises(ConfigError, match=r'update_every is 24.* at most.* 20: nothing'):

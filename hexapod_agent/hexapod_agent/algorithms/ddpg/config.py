@@ -10,6 +10,7 @@ from hexapod_agent.algorithms.learner import LearnerConfig
 from hexapod_agent.algorithms.noise import NoiseConfig
 from hexapod_agent.algorithms.ranges import (
     Count,
+    CountOrNone,
     Factor,
     Layers,
     PositiveFactor,
@@ -31,6 +32,7 @@ class ActorConfig:
         gradient_threshold: Largest L2 norm of an array's gradient.
         preactivation_penalty: Weight c of the loss term c mean(z²), z the output before tanh.
         normalize_loss: Whether the loss's value term is divided by mean |Q| of the batch.
+        waits: Updates that the critic learns alone; the actor follows at the next episode.
     """
 
     hidden: Layers
@@ -39,6 +41,7 @@ class ActorConfig:
     gradient_threshold: PositiveFactor
     preactivation_penalty: Factor
     normalize_loss: bool
+    waits: CountOrNone
 
 
 @dataclass(frozen=True)

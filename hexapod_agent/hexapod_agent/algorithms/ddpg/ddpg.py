@@ -118,10 +118,13 @@ class Ddpg:
         smoothing[list(agents)] = self._target_smoothing
         self._smoothing = smoothing.to(self.actor_parameters.flat)
 
-    def set_rate_share(self, share: float, agent: int = 0) -> None:
-        """Let an agent of the stack learn at so much of the learning rates from now on."""
-        for optimizer in self._optimizers().values():
-            optimizer.set_share(agent, share)
+    def set_rate_shares(self, actor: float, critic: float, agent: int = 0) -> None:
+        """Let an agent of the stack learn at so much of the learning rates from now on.
+
+        At 0 an actor stays as it is, while its optimiser sees the gradients.
+        """
+        self._actor_optimizer.set_share(agent, actor)
+        self._critic.optimizer.set_share(agent, critic)
 
     def _update(self, batch: Batch) -> tuple[Tensor, Tensor, Tensor]:
         critic_loss = self._update_critic(batch)

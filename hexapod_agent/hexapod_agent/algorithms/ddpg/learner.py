@@ -28,7 +28,7 @@ class DdpgLearner(Learner):
     Attributes:
         problem: Sizes and lengths.
         networks: Networks and their update.
-        rate_share: Share of the learning rates in this episode.
+        rate_shares: Shares of the actor's and the critic's learning rate in this episode.
     """
 
     metric_names = METRICS
@@ -37,6 +37,7 @@ class DdpgLearner(Learner):
         config.check_training(problem.episode_steps)
         ddpg = config.ddpg
         self._config, self.problem = ddpg, problem
+        self._actor_waits = config.actor.waits
         sizes = problem.observation_size, problem.action_size
         init, noise, replay = np.random.SeedSequence(seed).spawn(3)
         self._replay_generator = np.random.default_rng(replay)
@@ -49,15 +50,17 @@ class DdpgLearner(Learner):
         self._noise = OrnsteinUhlenbeckNoise(
             config.noise, sizes[1], problem.period_s, self._noise_generator
         )
-        self.rate_share = 1.0
+        self.rate_shares = (1.0, 1.0)
         self.output = np.zeros(sizes[1], np.float32)
         self._action: NDArray[np.float32] | None = None
         self._step = 0
+        self._updates = 0
 
     def begin_episode(self, rate_share: float) -> None:
         """Begin an episode, with noise at its mean."""
-        self.rate_share = rate_share
-        self.networks.set_rate_share(rate_share)
+        waits = self._updates < self._actor_waits
+        self.rate_shares = (0.0 if waits else rate_share, rate_share)
+        self.networks.set_rate_shares(*self.rate_shares)
         self._noise.reset()
         self._action = None
 
@@ -106,7 +109,8 @@ class DdpgLearner(Learner):
         return dict(zip(METRICS, np.array(seen).T, strict=True))
 
     def sample(self, batch: Batch) -> None:
-        """Draw the transitions of the next updates, as many as the batches are."""
+        """Draw the transitions of the next group of updates."""
+        self._updates += self._config.group_size
         self._replay.sample(self._replay_generator, batch)
 
     def policy(self) -> MlpPolicy:
@@ -117,6 +121,7 @@ class DdpgLearner(Learner):
         """Return networks, optimisers, replay buffer and random states."""
         return {
             'agent': self.networks.state_dict(),
+            'updates': self._updates,
             'replay_generator': self._replay_generator.bit_generator.state,
             'noise_generator': self._noise_generator.bit_generator.state,
             'noise_sigma': self._noise.sigma,
@@ -126,6 +131,7 @@ class DdpgLearner(Learner):
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
         """Take over what `state_dict` gave, of a learner with the same configuration."""
         self.networks.load_state_dict(state['agent'])
+        self._updates = state.get('updates', 0)  # those of before had no actor that waits
         self._replay_generator.bit_generator.state = state['replay_generator']
         self._noise_generator.bit_generator.state = state['noise_generator']
         self._noise.sigma = state['noise_sigma']

@@ -84,7 +84,7 @@ class DdpgStack(LearnerStack[DdpgLearner]):
             self._learning = slots
             self._networks.learn_only(slots)
         for slot, learner in due.items():
-            self._networks.set_rate_share(learner.rate_share, slot)
+            self._networks.set_rate_shares(*learner.rate_shares, slot)
         run(partial(self._draw, slot, learner) for slot, learner in due.items())
         for here, there in zip(vars(self._drawn).values(), vars(self._sent).values(), strict=True):
             there.copy_(here, non_blocking=True)
