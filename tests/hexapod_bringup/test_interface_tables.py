@@ -6,12 +6,12 @@
 from pathlib import Path
 
 import pytest
+from hexapod_doe.studies.study_text import replace_block
 from interface_tables import (
     PAGES,
     SAMPLE_BAG,
     metric_table,
     node_tables,
-    replace,
     sensor_table,
 )
 
@@ -21,7 +21,7 @@ CURE = 'run `python tests/support/interface_tables.py`'
 
 def stands(name: str, table: str) -> bool:
     page = (ROOT / PAGES[name]).read_text(encoding='utf-8')
-    return replace(page, name, table) == page
+    return replace_block(page, name, table) == page
 
 
 def test_the_sensor_table_is_that_of_the_code() -> None:
@@ -39,4 +39,4 @@ def test_the_interface_tables_are_those_of_the_nodes() -> None:
 
 def test_missing_markers_are_an_error() -> None:
     with pytest.raises(ValueError, match='no <!-- sensors: begin -->'):
-        replace('text', 'sensors', 'table')
+        replace_block('text', 'sensors', 'table')

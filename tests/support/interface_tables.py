@@ -28,6 +28,7 @@ from hexapod_doe.nodes.manager_node import PARAMETERS as MANAGER_PARAMETERS
 from hexapod_doe.nodes.manager_node import ManagerNode
 from hexapod_doe.nodes.player_node import PlayerNode
 from hexapod_doe.nodes.recorder_node import RecorderNode
+from hexapod_doe.studies.study_text import replace_block
 from hexapod_node.session import begin
 from hexapod_node.sync import LOCKSTEP, REALTIME
 from hexapod_sim.command_line import CommandLine
@@ -131,19 +132,6 @@ def node_tables(bag: Path) -> str:
     return '\n\n'.join(sections)
 
 
-def replace(text: str, marker: str, table: str) -> str:
-    """Return the text with what stands between the markers replaced.
-
-    Raises:
-        ValueError: the markers are missing.
-    """
-    begin, end = f'<!-- {marker}: begin -->', f'<!-- {marker}: end -->'
-    if begin not in text or end not in text:
-        raise ValueError(f'no {begin} … {end} in the text')
-    head, rest = text.split(begin, 1)
-    return f'{head}{begin}\n{table}\n{end}{rest.split(end, 1)[1]}'
-
-
 def _interface_in_real_time(make: Callable[..., Node]) -> list[tuple[str, ...]]:
     node = make([Parameter('sync', value=REALTIME)])
     rows = list(_interface(node))
@@ -229,7 +217,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     }
     for name, table in tables.items():
         page = root / PAGES[name]
-        page.write_text(replace(page.read_text(encoding='utf-8'), name, table), encoding='utf-8')
+        page.write_text(
+            replace_block(page.read_text(encoding='utf-8'), name, table), encoding='utf-8'
+        )
 
 
 if __name__ == '__main__':
