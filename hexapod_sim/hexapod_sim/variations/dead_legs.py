@@ -4,29 +4,13 @@
 """Legs whose servos give no torque."""
 
 from dataclasses import dataclass
-from typing import Annotated
 
 import mujoco
-from pydantic import AfterValidator
 
-from hexapod_sim.robot import LEGS
-from hexapod_sim.variations.variation import Variation, geoms_of, joints_of, named, paint, weaken
+from hexapod_sim.variations.legs import LegNames, LegVariation
+from hexapod_sim.variations.variation import geoms_of, joints_of, paint, weaken
 
 _COLOUR = (0.75, 0.16, 0.14, 1.0)
-
-
-def check_legs(text: str) -> str:
-    """Return a text that names legs.
-
-    Raises:
-        ValueError: It does not.
-    """
-    named(text, LEGS)
-    return text
-
-
-LegNames = Annotated[str, AfterValidator(check_legs)]
-"""Legs with + between them, or none."""
 
 
 @dataclass(frozen=True)
@@ -37,21 +21,16 @@ class DeadLegsOptions:
     """Dead legs: which, with + between them, or none; no torque, and the drag of the gears."""
 
 
-class DeadLegs(Variation):
+class DeadLegs(LegVariation):
     """Limp legs: the gears' inertia and drag stay, and so do encoders and contacts."""
 
     def __init__(self, options: DeadLegsOptions) -> None:
         """Take the legs."""
-        self._legs = named(options.dead_legs, LEGS)
-
-    @property
-    def is_present(self) -> bool:
-        """Whether there is one."""
-        return bool(self._legs)
+        super().__init__(options.dead_legs)
 
     def apply(self, spec: mujoco.MjSpec) -> None:
         """Take the torque of their servos, and paint them."""
-        weaken(spec, joints_of(self._legs), 0.0)
-        for leg in self._legs:
+        weaken(spec, joints_of(self.legs), 0.0)
+        for leg in self.legs:
             for geom in geoms_of(spec, leg):
                 paint(geom, _COLOUR)

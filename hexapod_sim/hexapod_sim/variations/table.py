@@ -10,7 +10,8 @@ from annotated_types import Interval
 
 from hexapod_sim.article import section
 from hexapod_sim.variations.blocked_joint import BlockedJointOptions, BlockedJoints, check_angle
-from hexapod_sim.variations.dead_legs import DeadLegs, DeadLegsOptions, check_legs
+from hexapod_sim.variations.dead_legs import DeadLegs, DeadLegsOptions
+from hexapod_sim.variations.legs import check_legs
 from hexapod_sim.variations.missing_legs import MissingLegs, MissingLegsOptions
 from hexapod_sim.variations.motor_strength import MotorStrength, MotorStrengthOptions
 from hexapod_sim.variations.payload import Payload, PayloadOptions

@@ -25,19 +25,18 @@ from hexapod_agent.algorithms.ranges import (
 from hexapod_agent.algorithms.update_groups import check_groups, group_size
 
 _ARTICLE_LAYERS = (400, 300)
-_STRIDE_STEPS = 24  # as DDPG's
-_BATCH, _BUFFER, _DISCOUNT, _SMOOTHING = 256, 1_000_000, 0.99, 0.005
+_DISCOUNT = 0.99
 # A step earns about 5: values of 500 are far from 0, where the library's critics start.
 _REWARD_SCALE = 0.1
 
 
 @dataclass(frozen=True)
-class Td3Section:
-    """The update of TD3 (Fujimoto et al. 2018).
+class OffPolicySection:
+    """What TD3 and SAC share: networks, the replay buffer and when there are updates.
 
     Attributes:
         hidden: Units of the hidden layers, of the actor and of both critics.
-        learning_rate: Adam's step size, of all networks.
+        learning_rate: Adam's step size, of all that is learned.
         batch_size: Transitions per update.
         buffer_size: Observations that the replay buffer keeps.
         discount: Discount factor per step.
@@ -46,56 +45,45 @@ class Td3Section:
         update_every: Steps between two groups of updates.
         update_ratio: Updates per step; those of a group are a whole number.
         reward_scale: Factor of the reward as the critics learn it.
+    """
+
+    hidden: Layers = _ARTICLE_LAYERS
+    learning_rate: Factor = 3e-4
+    batch_size: Count = 256
+    buffer_size: Rows = 1_000_000
+    discount: Share = _DISCOUNT
+    n_step: Count = 1
+    target_smoothing: Share = 0.005
+    update_every: Count = 24  # one stride, as DDPG's
+    update_ratio: PositiveFactor = 1.0
+    reward_scale: PositiveFactor = _REWARD_SCALE
+
+
+@dataclass(frozen=True)
+class Td3Section(OffPolicySection):
+    """The update of TD3 (Fujimoto et al. 2018).
+
+    Attributes:
         policy_delay: Updates of the critics for each one of the actor and the targets.
         target_noise: Standard deviation of the noise on the target's action.
         target_noise_limit: Where that noise is clipped.
     """
 
-    hidden: Layers = _ARTICLE_LAYERS
-    learning_rate: Factor = 3e-4
-    batch_size: Count = _BATCH
-    buffer_size: Rows = _BUFFER
-    discount: Share = _DISCOUNT
-    n_step: Count = 1
-    target_smoothing: Share = _SMOOTHING
-    update_every: Count = _STRIDE_STEPS
-    update_ratio: PositiveFactor = 1.0
-    reward_scale: PositiveFactor = _REWARD_SCALE
     policy_delay: Count = 2
     target_noise: Factor = 0.2
     target_noise_limit: Factor = 0.5
 
 
 @dataclass(frozen=True)
-class SacSection:
+class SacSection(OffPolicySection):
     """The update of SAC with a learned temperature (Haarnoja et al. 2018, 1812.05905).
 
     Attributes:
-        hidden: Units of the hidden layers, of the actor and of both critics.
-        learning_rate: Adam's step size, of all networks and of the temperature.
-        batch_size: Transitions per update.
-        buffer_size: Observations that the replay buffer keeps.
-        discount: Discount factor per step.
-        n_step: Rewards summed before the value of a later observation takes over.
-        target_smoothing: Share of the critics that moves into their targets per update.
-        update_every: Steps between two groups of updates.
-        update_ratio: Updates per step; those of a group are a whole number.
-        reward_scale: Factor of the reward as the critics learn it.
         temperature: Weight of the entropy at first.
         target_entropy: Entropy of the policy that the temperature is learned for, per number of
             the action.
     """
 
-    hidden: Layers = _ARTICLE_LAYERS
-    learning_rate: Factor = 3e-4
-    batch_size: Count = _BATCH
-    buffer_size: Rows = _BUFFER
-    discount: Share = _DISCOUNT
-    n_step: Count = 1
-    target_smoothing: Share = _SMOOTHING
-    update_every: Count = _STRIDE_STEPS
-    update_ratio: PositiveFactor = 1.0
-    reward_scale: PositiveFactor = _REWARD_SCALE
     temperature: PositiveFactor = 0.1
     target_entropy: Annotated[float, Interval(ge=-100.0, le=100.0)] = -1.0
 

@@ -17,7 +17,7 @@ from stable_baselines3.common.type_aliases import ReplayBufferSamples
 from hexapod_agent.algorithms.learner import Learner, Metrics, Problem
 from hexapod_agent.algorithms.policies import MlpPolicy
 from hexapod_agent.algorithms.replay import Batch, ReplayBuffer
-from hexapod_agent.algorithms.stable_baselines.config import SacSection, Td3Section
+from hexapod_agent.algorithms.stable_baselines.config import OffPolicySection
 from hexapod_agent.algorithms.stable_baselines.model import (
     Seen,
     completed,
@@ -28,8 +28,6 @@ from hexapod_agent.algorithms.stable_baselines.model import (
     state_of,
     torch_generator,
 )
-
-Section = Td3Section | SacSection
 
 
 class Trainable(Protocol):
@@ -71,7 +69,9 @@ class OffPolicyLearner(Learner):
     logged: Mapping[str, str]
     """The library's names of metrics, by ours."""
 
-    def __init__(self, section: Section, group_size: int, problem: Problem, seed: int) -> None:
+    def __init__(
+        self, section: OffPolicySection, group_size: int, problem: Problem, seed: int
+    ) -> None:
         """Make a learner of a section of a specification that updates in such groups."""
         self._section, self._group_size = section, group_size
         sizes = problem.observation_size, problem.action_size
