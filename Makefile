@@ -12,6 +12,10 @@ INTERFACES := $(shell find ros_ws/src/hexapod_interfaces -type f)
 INSTALLED := $(shell find $(CODE) -name setup.py -o -name setup.cfg -o -name package.xml -o -name '*.xml' \
 	-o -name '*.yaml' -o -name '*.html*' -o -name '*.launch.xml' -o -name '*.urdf' -o -name '*.json' -not -path '*/__pycache__/*')
 ENTER := export HEXAPOD_VENV='$(abspath $(VENV))'; source setup.bash
+# Test processes at once; tests wait a lot for each other, so one more than there are cores.
+# WORKERS=0 runs them one after another, in this process.
+WORKERS ?= $(shell cores=$$(nproc); echo $$((cores < 7 ? cores + 1 : 8)))
+BESIDE := -n $(WORKERS) --dist loadfile --no-loadscope-reorder
 DEMO := bags/demo
 DEMO_EPISODES := 4
 STUDY := bags/study
@@ -59,7 +63,7 @@ answer: setup  ## rebuild every figure and number of the study from its bags
 	@$(ENTER); python -m hexapod_doe.studies.answer $(STUDY) --out docs
 
 test: setup  ## run the tests, without the proofs that take minutes each
-	@$(ENTER); python -m pytest -m 'not slow' $(PYTEST)
+	@$(ENTER); python -m pytest -m 'not slow' $(BESIDE) $(PYTEST)
 
 test-slow: setup  ## run the slow proofs
 	@$(ENTER); python -m pytest -m slow $(PYTEST)

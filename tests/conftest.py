@@ -26,17 +26,32 @@ _MARKERS = (
     'graph: starts rclpy nodes inside the test process',
     'system: starts nodes as processes of their own',
     'slow: a proof of minutes; run by make test-slow',
+    'alone: judges how long something takes; no test runs beside it',
 )
-
+# Folders whose tests wait a lot, by which several workers should begin.
+_FIRST = ('system', 'graph')
 
 # What several tests share, and who reads the documentation runs, lies there.
 sys.path.insert(0, str(Path(__file__).parent / 'support'))
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Make the marks of the tests known."""
+    """Make the marks of the tests known, and have workers take turns (`make test`)."""
     for marker in _MARKERS:
         config.addinivalue_line('markers', marker)
+    worker = getattr(config, 'workerinput', None)  # pytest-xdist's, in its workers
+    if worker is not None:
+        from turns import Turns
+
+        config.pluginmanager.register(
+            Turns(Path(tempfile.gettempdir(), f'hexapod_turns_{worker["testrunuid"]}'))
+        )
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with what takes longest, so that no worker is left with it at the end."""
+    ranks = {folder: rank for rank, folder in enumerate(_FIRST)}
+    items.sort(key=lambda item: ranks.get(item.path.parent.name, len(ranks)))
 
 
 def pytest_collection_finish() -> None:

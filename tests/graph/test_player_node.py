@@ -124,6 +124,7 @@ def least_error(heard: list[tuple[float, int]], size: int) -> float:
     return min(map(median_error, rounds), default=float('inf'))
 
 
+@pytest.mark.alone
 def test_real_time_is_kept_within_2_ms(graph, bag):
     listener = Listener(graph, {'/w0/joint_states': TYPES['/w0/joint_states']})
     add_heard_player(graph, bag, loop=True)
@@ -135,6 +136,7 @@ def test_real_time_is_kept_within_2_ms(graph, bag):
     graph.until(lambda: least_error(heard(), 40) < 2e-3)
 
 
+@pytest.mark.alone
 def test_a_whole_graph_is_kept_within_2_ms(graph, monkeypatch):
     topics = ' '.join(name for name in BagFile(SAMPLE).types if 'episode_result' not in name)
     player = add_player(graph, SAMPLE, start=14.0, topics=topics, loop=True)
@@ -150,6 +152,7 @@ def test_a_whole_graph_is_kept_within_2_ms(graph, monkeypatch):
     graph.until(lambda: least_error(published, 42) < 2e-3)
 
 
+@pytest.mark.alone
 def test_rate_may_be_a_whole_number(graph):
     listener = Listener(graph, {'/hexapod/odom': 'nav_msgs/msg/Odometry'})
     player = add_heard_player(graph, SAMPLE, rate=0, topics='odom')

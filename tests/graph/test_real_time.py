@@ -27,7 +27,7 @@ from trajectory_msgs.msg import JointTrajectory
 
 from hexapod_sim import robot
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.alone]
 STOP_RATE = 0.5
 SMALL = {'actor': {'hidden': [16, 12]}, 'critic': {'hidden': [16, 12]}}
 # A busy machine may hold up a whole process: ages that no pause of it reaches.

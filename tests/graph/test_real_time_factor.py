@@ -29,6 +29,7 @@ def ros_args(request) -> list[str]:
     return ['--ros-args', *(word for value in given for word in ('-p', value))]
 
 
+@pytest.mark.alone
 def test_stamps_are_of_simulated_time_on_every_node(graph) -> None:
     sensed: list[int] = []
     commanded: list[int] = []

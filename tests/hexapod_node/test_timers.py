@@ -21,7 +21,7 @@ from hexapod_node.timers import call_every, call_later, call_soon, cancel_all
 from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.node import Node
 
-pytestmark = pytest.mark.graph
+pytestmark = [pytest.mark.graph, pytest.mark.alone]
 Spin = Callable[[float], None]
 
 

@@ -9,7 +9,7 @@ import json
 
 import pytest
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.system, pytest.mark.alone]
 DRIVER = (
     'ros2 run hexapod_sim fake_driver --ros-args -r __ns:=/robot -p channel:=imu/data '
     '-p topic:=bno055/data -p frame:=bno055 -p noise:=0.01'

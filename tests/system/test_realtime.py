@@ -37,6 +37,7 @@ def test_a_robot_is_launched_managed_and_interrupted(shell, agent: str) -> None:
     assert 'Traceback' not in shell.output()
 
 
+@pytest.mark.alone
 def test_one_command_reports_how_late_the_ticks_are(shell, agent: str) -> None:
     ended = shell.run(f'ros2 run hexapod_bringup realtime_report --seconds 3 --checkpoint {agent}')
     # How late depends on what else the machine does.

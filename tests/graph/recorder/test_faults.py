@@ -53,6 +53,7 @@ def test_missing_duplicate_and_stray_samples_mark_the_run(worker, tmp_path):
     assert read_run(bag).metadata['incomplete'].splitlines() == faults
 
 
+@pytest.mark.alone
 def test_last_sample_that_never_comes_is_reported_after_the_time(worker, tmp_path):
     worker.start(tmp_path / 'r1')
     worker.enable(0)
