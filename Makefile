@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -e -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help setup other-ros demo check test test-slow lint type format study answer bench bench-learner film clean clean-demo
+.PHONY: help setup other-ros demo check rules test test-slow coverage lint type format study answer bench bench-learner film clean clean-demo
 
 VENV ?= .venv
 PACKAGES := hexapod_sim hexapod_cpg hexapod_agent hexapod_doe
@@ -28,11 +28,14 @@ setup: other-ros ros_ws/install/.ready  ## make the virtual environment and buil
 other-ros:
 	@.ci/other_ros
 
-$(VENV)/.ready: requirements.txt requirements-ros.txt requirements-dev.txt constraints.txt | other-ros
+$(VENV)/.ready: requirements.txt requirements-ros.txt constraints.txt | other-ros
 	@python=$$(.ci/prerequisites) && "$$python" -m venv $(VENV)
-	@echo 'Installing the libraries and ROS 2 into $(VENV), 1 to 3 minutes ...'
-	@PYTHONUNBUFFERED=1 $(VENV)/bin/python -m pip install --disable-pip-version-check --progress-bar off \
-		-r requirements.txt -r requirements-ros.txt -r requirements-dev.txt -c constraints.txt | .ci/progress
+	@.ci/libraries $(VENV) 'the libraries and ROS 2' -r requirements.txt -r requirements-ros.txt -c constraints.txt
+	@touch $@
+
+# What only tests and linters need, a demo does not wait for.
+$(VENV)/.dev: $(VENV)/.ready requirements-dev.txt
+	@.ci/libraries $(VENV) 'what tests and linters need' -r requirements-dev.txt -c constraints.txt
 	@touch $@
 
 ros_ws/install/.ready: $(VENV)/.ready $(INTERFACES) $(INSTALLED) | other-ros
@@ -62,23 +65,30 @@ study: setup  ## run what is missing of the published study, hours of it; the es
 answer: setup  ## rebuild every figure and number of the study from its bags
 	@$(ENTER); python -m hexapod_doe.studies.answer $(STUDY) --out docs
 
-test: setup  ## run the tests, without the proofs that take minutes each
+test: setup $(VENV)/.dev  ## run the tests, without the proofs that take minutes each
 	@$(ENTER); python -m pytest -m 'not slow' $(BESIDE) $(PYTEST)
 
-test-slow: setup  ## run the slow proofs
+test-slow: setup $(VENV)/.dev  ## run the slow proofs
 	@$(ENTER); python -m pytest -m slow $(PYTEST)
 
-check: setup lint type  ## style, types and the rules of the house: what CI runs first
+coverage: setup $(VENV)/.dev  ## tell how much of the code the tests run, as far as it runs in their processes
+	@$(ENTER); python -m pytest -m 'not slow' $(BESIDE) -q $(PACKAGES:%=--cov=%) --cov=hexapod_node --cov=hexapod_bringup \
+		--cov-report=term $(PYTEST)
+
+check: setup  ## style, types and the rules of the house: what CI runs first
+	@$(MAKE) --no-print-directory --jobs --output-sync=target lint type rules
+
+rules: setup $(VENV)/.dev  ## hold the rules of the house: imports, packages, pages
 	@$(ENTER); python -m pytest -q tests/test_house.py tests/test_docs.py tests/test_packages.py
 
-lint: $(VENV)/.ready  ## check style; asks for no workspace
+lint: $(VENV)/.dev  ## check style; asks for no workspace
 	@$(VENV)/bin/ruff check . && $(VENV)/bin/ruff format --check .
 
-type: $(VENV)/.ready  ## check types; asks for no workspace
+type: $(VENV)/.dev  ## check types; asks for no workspace
 	@$(VENV)/bin/mypy $(PACKAGES:%=-p %) $(ROS_PACKAGES:%=-p %)
 
-format: setup  ## rewrite the code in the project's style
-	@$(ENTER); ruff check --fix-only . ; ruff format .
+format: $(VENV)/.dev  ## rewrite the code in the project's style
+	@$(VENV)/bin/ruff check --fix-only . ; $(VENV)/bin/ruff format .
 
 bench: setup bench-learner  ## measure speed, as ratios within one run
 	@$(ENTER); for bench in $(filter-out %/bench_learner.py,$(wildcard tests/benchmarks/bench_*.py)); do \
