@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -e -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help setup other-ros demo check rules test test-slow coverage lint type format study answer bench bench-learner film clean clean-demo
+.PHONY: help setup other-ros demo check rules test test-slow coverage lint type format docs study answer bench bench-learner film clean clean-demo
 
 VENV ?= .venv
 PACKAGES := hexapod_sim hexapod_cpg hexapod_agent hexapod_doe
@@ -90,6 +90,15 @@ type: $(VENV)/.dev  ## check types; asks for no workspace
 format: $(VENV)/.dev  ## rewrite the code in the project's style
 	@$(VENV)/bin/ruff check --fix-only . ; $(VENV)/bin/ruff format .
 
+docs: $(VENV)-docs/.ready  ## build the documentation as a site, site/index.html; asks for no workspace
+	@NO_MKDOCS_2_WARNING=1 $(VENV)-docs/bin/python -m mkdocs build --strict
+	@echo 'open site/index.html'
+
+$(VENV)-docs/.ready: requirements-docs.txt constraints.txt
+	@$(or $(PYTHON),python3) -m venv $(VENV)-docs
+	@$(VENV)-docs/bin/python -m pip install --quiet --disable-pip-version-check -r requirements-docs.txt -c constraints.txt
+	@touch $@
+
 bench: setup bench-learner  ## measure speed, as ratios within one run
 	@$(ENTER); for bench in $(filter-out %/bench_learner.py,$(wildcard tests/benchmarks/bench_*.py)); do \
 		echo "== $$bench"; python $$bench || exit 1; done
@@ -122,4 +131,4 @@ clean-demo:  ## forget the demo campaign, and leave what else lies in its folder
 	[ ! -d $(DEMO) ] || rmdir --ignore-fail-on-non-empty $(DEMO)
 
 clean:  ## remove the virtual environment and everything built
-	rm -rf $(VENV) ros_ws/build ros_ws/install ros_ws/log .mypy_cache .pytest_cache .ruff_cache
+	rm -rf $(VENV) $(VENV)-docs site ros_ws/build ros_ws/install ros_ws/log .mypy_cache .pytest_cache .ruff_cache

@@ -10,6 +10,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hexapod_node.participants import participants_here
@@ -131,3 +132,13 @@ def told() -> Callable[[str], list[str]]:
     return lambda output: [
         line for line in output.strip().splitlines() if not any(text in line for text in others)
     ]
+
+
+@pytest.fixture(scope='session')
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    """A `browser.Browser` with an empty profile; tests that ask for it bear `needs_browser`."""
+    from browser import Browser
+
+    session = Browser(tmp_path_factory.mktemp('profile'))
+    yield session
+    session.close()

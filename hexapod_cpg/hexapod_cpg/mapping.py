@@ -64,6 +64,15 @@ class ActionRanges:
 
     These ranges cannot topple the robot; wider ones end most early episodes in a fall or a spin.
     Action zero is a straight tripod walk.
+
+    Attributes:
+        mu: Of the squared radius of the limit cycle; reading D2 alone sets it.
+        frequency: Of the oscillator's angular frequency; reading D2 alone sets it.
+        hip_gain: Of the hip angle per unit of x.
+        knee_gain: Of the knee angle per unit of -y.
+        knee_bias: Of the knee angle's constant part.
+        ankle_gain: Of the ankle angle per unit of -y.
+        ankle_bias: Of the ankle angle's constant part.
     """
 
     mu: tuple[float, float]

@@ -40,13 +40,16 @@ from rclpy.action import get_action_server_names_and_types_by_node
 from rclpy.lifecycle import LifecycleNode
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.qos import DurabilityPolicy, HistoryPolicy, ReliabilityPolicy
 from rclpy.utilities import try_shutdown
+from specification_tables import specification_tables
 
 SAMPLE_BAG = 'bags/sample'
 PAGES = {
     'sensors': 'README.md',
     'interfaces': 'docs/interfaces.md',
     'metrics': 'bags/README.md',
+    'specification': 'docs/specification.md',
 }
 """Where each table stands, below the root of the repository."""
 _NODES = {
@@ -143,8 +146,8 @@ def _node_table(node: Node, played: set[str], further: Iterable[tuple[str, ...]]
     every = dict.fromkeys([*_interface(node), *further])
     rows = [row for row in every if f'/{row[1].strip("`")}' not in played]
     if played:
-        rows.append(('publishes', 'every topic of the bag', 'as recorded'))
-    interface = _markdown(('', 'name', 'type'), rows)
+        rows.append(('publishes', 'every topic of the bag', 'as recorded', 'as recorded'))
+    interface = _markdown(('', 'name', 'type', 'quality of service'), rows)
     parameters = list(_parameters(node))
     if not parameters:
         return interface
@@ -153,21 +156,33 @@ def _node_table(node: Node, played: set[str], further: Iterable[tuple[str, ...]]
 
 
 def _interface(node: Node) -> Iterator[tuple[str, ...]]:
-    ends: list[tuple[str, str, Any, str]]
-    ends = [('publishes', p.topic_name, p.msg_type, 'msg') for p in node.publishers]
-    ends += [('subscribes', s.topic_name, s.msg_type, 'msg') for s in node.subscriptions]
-    ends += [('serves', s.service_name, s.srv_type, 'srv') for s in node.services]
-    ends += [('calls', c.service_name, c.srv_type, 'srv') for c in node.clients]
-    for what, name, kind, interface in ends:
+    ends: list[tuple[str, str, Any, str, str]]
+    ends = [('publishes', p.topic_name, p.msg_type, 'msg', _quality(p)) for p in node.publishers]
+    ends += [
+        ('subscribes', s.topic_name, s.msg_type, 'msg', _quality(s)) for s in node.subscriptions
+    ]
+    ends += [('serves', s.service_name, s.srv_type, 'srv', '') for s in node.services]
+    ends += [('calls', c.service_name, c.srv_type, 'srv', '') for c in node.clients]
+    for what, name, kind, interface, quality in ends:
         common = _COMMON_SERVICES.search(name) or _LIFECYCLE_SERVICES.search(name)
         if name not in _COMMON_TOPICS and not common:
             package = kind.__module__.split('.')[0]
-            yield what, _code(name), f'`{package}/{interface}/{kind.__name__}`'
+            yield what, _code(name), f'`{package}/{interface}/{kind.__name__}`', quality
     if isinstance(node, LifecycleNode):
-        yield 'serves', 'the transitions of a managed node', '`lifecycle_msgs/srv/ChangeState`, …'
+        transitions = 'the transitions of a managed node', '`lifecycle_msgs/srv/ChangeState`, …'
+        yield 'serves', *transitions, ''
     own = (node.get_name(), node.get_namespace())
     for name, kinds in get_action_server_names_and_types_by_node(node, *own):
-        yield 'action', _code(name), f'`{kinds[0]}`'
+        yield 'action', _code(name), f'`{kinds[0]}`', ''
+
+
+def _quality(end: Any) -> str:
+    """Say which quality of service a publisher offers, or a subscription asks for."""
+    qos = end.qos_profile
+    reliable = 'reliable' if qos.reliability is ReliabilityPolicy.RELIABLE else 'best effort'
+    latched = 'latched' if qos.durability is DurabilityPolicy.TRANSIENT_LOCAL else ''
+    kept = f'last {qos.depth}' if qos.history is HistoryPolicy.KEEP_LAST else 'keeps all'
+    return ', '.join(filter(None, (reliable, latched, kept)))
 
 
 def _parameters(node: Node) -> Iterator[tuple[str, ...]]:
@@ -214,6 +229,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         'sensors': sensor_table(),
         'interfaces': node_tables(root.resolve() / SAMPLE_BAG),
         'metrics': metric_table(),
+        'specification': specification_tables(),
     }
     for name, table in tables.items():
         page = root / PAGES[name]

@@ -168,7 +168,7 @@ def config_table(default: Any, prefix: str) -> tuple[Parameter, ...]:
     `Interval` in its annotation is the range, a `Literal` the choices.
     """
     config = type(default)
-    docs = _field_docs(config)
+    docs = field_docs(config)
     hints = get_type_hints(config, include_extras=True)
     table = []
     for field in fields(config):
@@ -194,7 +194,7 @@ def _limits(hint: Any) -> tuple[float, float] | None:
     return None
 
 
-def _field_docs(config: type) -> dict[str, str]:
+def field_docs(config: type) -> dict[str, str]:
     """Return the string that follows each field in the source of a dataclass and its bases."""
     docs: dict[str, str] = {}
     for base in config.__mro__[:-1]:
