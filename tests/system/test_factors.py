@@ -43,6 +43,27 @@ OTHERS = """
 - {name: learning rate, key: learner.actor.learning_rate, low: 1e-4, high: 2e-3}
 """
 EIGHT = (SENSORS + OTHERS, '--design sixteenth', 16, 8)
+EIGHT_CHANGES = (
+    'joint torques off → on',
+    'body velocity off → on',
+    'body orientation off → on',
+    'body height off → on',
+    'foot contacts off → on',
+    'share of closeness 0 → 2',
+    'IMU noise 0 → 0.1',
+    'learning rate 0.0001 → 0.002',
+)
+EXAMPLE = Path(__file__).resolve().parents[2] / 'docs' / 'harder.yaml'
+HARDER = (EXAMPLE.read_text(encoding='utf-8'), '--design eighth', 16, 4)
+HARDER_CHANGES = (
+    'learner ddpg → sac',
+    'ground flat → rough',
+    'payload 0 → 1.2',
+    'closeness weight 2 → 4',
+    'IMU noise 0 → 0.05',
+    'body orientation off → on',
+    'foot contacts off → on',
+)
 FEW = (
     """
 - {name: body orientation, key: observations.C, low: off, high: on}
@@ -70,7 +91,7 @@ def trained(shell, factors: str, design: str, rows: int, episodes: int) -> tuple
         '--processes 1',
     )
     for line in lines:
-        ended = shell.run(line, timeout_s=280.0)
+        ended = shell.run(line, timeout_s=400.0)
         assert ended.returncode == 0, ended.stdout + ended.stderr
         assert f'{rows} of {rows} runs' in ended.stdout
     return here / 'graph', here / 'fleet'
@@ -105,23 +126,23 @@ def test_rows_that_differ_in_anything_are_trained_alike_by_workers_and_by_a_flee
 
 
 @pytest.mark.slow
-def test_eight_factors_from_plan_to_report(shell) -> None:
-    graph, fleet = trained(shell, *EIGHT)
+@pytest.mark.timeout(900)
+@pytest.mark.parametrize(
+    ('factors', 'changes'),
+    [(EIGHT, EIGHT_CHANGES), (HARDER, HARDER_CHANGES)],
+    ids=['eight', 'seven'],
+)
+def test_sixteen_cases_from_plan_to_report(
+    shell, factors: tuple[str, str, int, int], changes: tuple[str, ...]
+) -> None:
+    *_, rows, episodes = factors
+    graph, fleet = trained(shell, *factors)
     records = check_equal(graph, fleet)
-    assert len(records) == 16
-    assert all(len(record.episodes) == 8 for record in records)
+    assert len(records) == rows
+    assert all(len(record.episodes) == episodes for record in records)
     ended = shell.run('ros2 run hexapod_doe analyze graph --out report', timeout_s=200.0)
     assert ended.returncode == 0, ended.stderr
     page = (shell.directory / 'report' / 'index.html').read_text(encoding='utf-8')
     report = ' '.join(html.unescape(re.sub('<[^>]+>', ' ', page)).split())
-    for change in (
-        'joint torques off → on',
-        'body velocity off → on',
-        'body orientation off → on',
-        'body height off → on',
-        'foot contacts off → on',
-        'share of closeness 0 → 2',
-        'IMU noise 0 → 0.1',
-        'learning rate 0.0001 → 0.002',
-    ):
+    for change in changes:
         assert change in report
