@@ -15,7 +15,8 @@ ROOT = Path(__file__).resolve().parents[1]
 PAGES = [
     *ROOT.glob('*.md'),
     *ROOT.glob('.github/*.md'),
-    *ROOT.glob('docs/*.md'),
+    *ROOT.glob('docs/**/*.md'),
+    *ROOT.glob('examples/*.md'),
     *ROOT.glob('bags/*.md'),
     *ROOT.glob('tests/data/**/*.md'),
     *ROOT.glob('ros_ws/src/*/*.md'),

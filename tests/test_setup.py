@@ -132,7 +132,7 @@ def test_without_a_workspace_make_setup_is_named(project, shell) -> None:
 
 
 def test_a_slurm_job_with_a_careful_first_line_runs() -> None:
-    # docs/batch.md's job, in the real workspace; status 2: there is no such plan
+    # docs/tutorials/batch.md's job, in the real workspace; status 2: there is no such plan
     command = 'exec ros2 run hexapod_doe campaign_status bags/nowhere'
     script = f'set -euo pipefail\nsource setup.bash\n{command}'
     venv = {name: os.environ[name] for name in ('HEXAPOD_VENV',) if name in os.environ}

@@ -46,8 +46,8 @@ def make_trainer(small_config):
 
 @pytest.fixture
 def search(small_config, monkeypatch) -> RunSpec:
-    """A specification of the algorithm in algorithms/random_search.py."""
-    monkeypatch.syspath_prepend(Path(__file__).parent / 'algorithms')
+    """A specification of the algorithm in examples/random_search.py."""
+    monkeypatch.syspath_prepend(Path(__file__).parents[2] / 'examples')
     names = (f'random_search:{name}' for name in ('RandomSearchConfig', 'RandomSearch'))
     monkeypatch.setitem(ALGORITHMS, 'random_search', Algorithm(*names))
     return small_config.with_value('learner.algorithm', 'random_search', 'a test')

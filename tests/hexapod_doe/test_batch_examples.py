@@ -1,7 +1,7 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""The examples of docs/batch.md are what a shell, Kubernetes and `run_case` accept."""
+"""The examples of docs/tutorials/batch.md are what a shell, Kubernetes and `run_case` accept."""
 
 import re
 import shlex
@@ -12,13 +12,12 @@ import pytest
 import yaml
 from hexapod_doe.run_case import parser
 
-TEXT = (Path(__file__).parents[2] / 'docs' / 'batch.md').read_text()
+TEXT = (Path(__file__).parents[2] / 'docs' / 'tutorials' / 'batch.md').read_text()
 COMMANDS = re.findall(r'ros2 run hexapod_doe run_case\s+(--[^\n]*(?:\n\s+--[^\n]*)?)', TEXT)
 
 
-def block(language: str) -> str:
-    (found,) = re.findall(rf'```{language}\n(.*?)```', TEXT, re.DOTALL)
-    return found
+def blocks(language: str) -> list[str]:
+    return re.findall(rf'```{language}\n(.*?)```', TEXT, re.DOTALL)
 
 
 @pytest.mark.parametrize('command', COMMANDS)
@@ -34,11 +33,12 @@ def test_four_commands_are_shown():
 
 
 def test_the_array_job_is_a_shell_script():
-    subprocess.run(['bash', '-n'], input=block('bash'), text=True, check=True)
+    (job,) = [text for text in blocks('bash') if text.startswith('#!/bin/bash\n#SBATCH')]
+    subprocess.run(['bash', '-n'], input=job, text=True, check=True)
 
 
 def test_the_indexed_job_names_its_volume_and_counts_its_rows():
-    job = yaml.safe_load(block('yaml'))
+    job = yaml.safe_load(*blocks('yaml'))
     pod = job['spec']['template']['spec']
     (container,) = pod['containers']
     assert job['spec']['completionMode'] == 'Indexed'

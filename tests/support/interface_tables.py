@@ -46,7 +46,7 @@ from specification_tables import specification_tables
 
 SAMPLE_BAG = 'bags/sample'
 PAGES = {
-    'sensors': 'README.md',
+    'sensors': 'docs/sensors.md',
     'interfaces': 'docs/interfaces.md',
     'metrics': 'bags/README.md',
     'specification': 'docs/specification.md',

@@ -44,7 +44,7 @@ LINES = {
     'description': ('ros2 run hexapod_bringup description_node', 'description'),
     'check_sensors': (f'{DOE} check_sensors --observations A --seconds 60', 'check_sensors'),
 }
-# A row that was interrupted is not done, which a batch system has to know (docs/batch.md).
+# A row that was interrupted is not done, as a batch system has to know: docs/tutorials/batch.md.
 CASE = f'{DOE} run_case --plan c/plan.csv --row 1 --episodes 50 --out jobs'
 QUICK = ('worker', 'manager', 'evaluate', 'play in real time')
 
