@@ -39,8 +39,8 @@ $(VENV)/.dev: $(VENV)/.ready requirements-dev.txt
 	@touch $@
 
 ros_ws/install/.ready: $(VENV)/.ready $(INTERFACES) $(INSTALLED) | other-ros
-	@echo 'Building the ROS workspace, 1 to 6 minutes ...'
-	@unset _ROS_WHEELS_BOOTSTRAP_COMPLETE; source $(VENV)/bin/activate \
+	@echo 'Building the ROS workspace ...'
+	@unset _ROS_WHEELS_BOOTSTRAP_COMPLETE; export MAKEFLAGS=-j$$(nproc); source $(VENV)/bin/activate \
 	&& export AMENT_PREFIX_PATH='$(abspath $(VENV))' CMAKE_PREFIX_PATH='$(abspath $(VENV))' \
 	&& cd ros_ws && python -m colcon build --symlink-install \
 		--event-handlers console_cohesion- console_stderr- console_direct+ \
