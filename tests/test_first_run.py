@@ -34,7 +34,7 @@ def test_large_downloads_are_named_and_all_are_added_up(tmp_path: Path) -> None:
     assert progress(f'cat {tmp_path}/pip') == [
         '  16 MB: numpy-2.4.6 (16.9 MB)',
         '  1217 MB: nvidia_cublas-13.1-py3-none.whl (1200.5 MB)',
-        '  unpacking',
+        '  1217 MB downloaded, unpacking',
     ]
 
 
@@ -46,7 +46,7 @@ def test_many_small_downloads_are_told_by_their_sum() -> None:
 def test_silence_is_filled_and_no_line_torn_by_it() -> None:
     shown = progress("printf 'Installing coll'; sleep 1.3; echo 'ected packages: a'; sleep 1.3")
     assert [line.split(': ')[-1].strip() for line in shown] == [
-        'still at work', 'unpacking', 'still unpacking',
+        'still at work', '0 MB downloaded, unpacking', 'still unpacking',
     ]  # fmt: skip
 
 
