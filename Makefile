@@ -8,9 +8,9 @@ VENV ?= .venv
 PACKAGES := hexapod_sim hexapod_cpg hexapod_agent hexapod_doe
 ROS_PACKAGES := hexapod_node hexapod_bringup ros2_mini
 CODE := $(PACKAGES) $(ROS_PACKAGES:%=ros_ws/src/%)
-INTERFACES := $(shell find ros_ws/src/hexapod_interfaces -type f)
+INTERFACES := $(shell find ros_ws/src/hexapod_interfaces -type f 2>/dev/null)
 INSTALLED := $(shell find $(CODE) -name setup.py -o -name setup.cfg -o -name package.xml -o -name '*.xml' \
-	-o -name '*.yaml' -o -name '*.html*' -o -name '*.launch.xml' -o -name '*.urdf' -o -name '*.json' -not -path '*/__pycache__/*')
+	-o -name '*.yaml' -o -name '*.html*' -o -name '*.launch.xml' -o -name '*.urdf' -o -name '*.json' -not -path '*/__pycache__/*' 2>/dev/null)
 ENTER := export HEXAPOD_VENV='$(abspath $(VENV))'; source setup.bash
 # Test processes at once; tests wait a lot for each other, so one more than there are cores.
 # WORKERS=0 runs them one after another, in this process.
@@ -30,7 +30,7 @@ other-ros:
 
 $(VENV)/.ready: requirements.txt requirements-ros.txt constraints.txt | other-ros
 	@python=$$(.ci/prerequisites) && "$$python" -m venv $(VENV)
-	@.ci/libraries $(VENV) 'the libraries and ROS 2' -r requirements.txt -r requirements-ros.txt -c constraints.txt
+	@.ci/libraries $(VENV) 'the libraries and ROS 2 (0.4 GB to download, 1.5 GB on this disk)' -r requirements.txt -r requirements-ros.txt -c constraints.txt
 	@touch $@
 
 # What only tests and linters need, a demo does not wait for.

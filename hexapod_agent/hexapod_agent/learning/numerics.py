@@ -1,11 +1,12 @@
 # Copyright 2026 The hexapod authors
 # SPDX-License-Identifier: Apache-2.0
 
-"""In which arithmetic a training computes, and what of torch that sets for the whole process."""
+"""In which arithmetic a training computes, and what of torch that sets for the whole process.
+
+torch takes longer to import than a plan takes to make: it is imported where it is asked.
+"""
 
 from functools import cache
-
-import torch
 
 from hexapod_agent.specification.run_spec import ConfigError, RunSpec
 
@@ -17,6 +18,8 @@ def set_numerics(precision: str) -> None:
 
     Whoever steps through a training calls it before the first update; acting sets nothing.
     """
+    import torch
+
     # One thread: a sum split over threads is not the same to the last bit.
     torch.set_num_threads(1)
     torch.set_float32_matmul_precision('highest' if precision == 'float32' else 'medium')
@@ -25,6 +28,8 @@ def set_numerics(precision: str) -> None:
 @cache
 def computes_bfloat16() -> bool:
     """Return whether this processor has instructions for products of such numbers."""
+    import torch
+
     instructions = torch.cpu.get_capabilities()
     return any(has for name, has in instructions.items() if name.endswith('bf16'))
 

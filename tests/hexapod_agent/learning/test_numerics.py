@@ -4,6 +4,7 @@
 """A run begins in the arithmetic that its processor has, and its record says which that is."""
 
 import pytest
+import torch
 from hexapod_agent.learning import numerics
 from hexapod_agent.learning.numerics import check_precision, computes_bfloat16, resolved
 from hexapod_agent.specification.run_spec import ConfigError, RunSpec
@@ -28,7 +29,7 @@ def processor(monkeypatch):
     [({'avx2': True, 'avx512_bf16': True}, True), ({'avx2': True, 'avx512_bf16': False}, False)],
 )
 def test_it_is_asked_of_torch(instructions, has, monkeypatch):
-    monkeypatch.setattr(numerics.torch.cpu, 'get_capabilities', lambda: instructions)
+    monkeypatch.setattr(torch.cpu, 'get_capabilities', lambda: instructions)
     computes_bfloat16.cache_clear()
     assert computes_bfloat16() is has
     computes_bfloat16.cache_clear()
