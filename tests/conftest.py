@@ -30,7 +30,7 @@ _MARKERS = (
     'alone: judges how long something takes; no test runs beside it',
 )
 # Folders whose tests wait a lot, by which several workers should begin.
-_FIRST = ('system', 'graph')
+_FIRST = ('system', 'graph', 'docs')
 
 # What several tests share, and who reads the documentation runs, lies there.
 sys.path.insert(0, str(Path(__file__).parent / 'support'))
@@ -40,13 +40,10 @@ def pytest_configure(config: pytest.Config) -> None:
     """Make the marks of the tests known, and have workers take turns (`make test`)."""
     for marker in _MARKERS:
         config.addinivalue_line('markers', marker)
-    worker = getattr(config, 'workerinput', None)  # pytest-xdist's, in its workers
-    if worker is not None:
+    if hasattr(config, 'workerinput'):  # a worker of pytest-xdist; their folders lie side by side
         from turns import Turns
 
-        config.pluginmanager.register(
-            Turns(Path(tempfile.gettempdir(), f'hexapod_turns_{worker["testrunuid"]}'))
-        )
+        config.pluginmanager.register(Turns(Path(config.option.basetemp).parent / 'turns'))
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
