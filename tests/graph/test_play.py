@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 from hexapod_agent.deployment import agent_file
@@ -41,6 +42,17 @@ def path(tmp_path) -> str:
     return str(tmp_path / 'agent.pt')
 
 
+@pytest.fixture(params=['ddpg', 'td3', 'sac', 'ppo'])
+def agent(request: pytest.FixtureRequest, path: str, tmp_path: Path) -> str:
+    """Return an untrained checkpoint of each algorithm."""
+    if request.param == 'ddpg':
+        return path
+    learner = {'algorithm': request.param, request.param: {'hidden': [16, 12]}}
+    spec = RunSpec.from_mapping({'task': SMALL['task'], 'learner': learner}, 'small')
+    checkpoint.save_agent(tmp_path / 'agent.pt', Trainer(spec.observing('BC'), 5))
+    return str(tmp_path / 'agent.pt')
+
+
 def figures(path: str, *options: str) -> dict[str, float]:
     file = f'{path}.json'
     evaluate.main([path, '--starts', '3', '--seed', '9', '--json', file, *options])
@@ -48,10 +60,10 @@ def figures(path: str, *options: str) -> dict[str, float]:
         return json.load(text)
 
 
-def test_evaluation_on_the_graph_equals_the_environments(path: str) -> None:
-    alone = figures(path)
+def test_evaluation_on_the_graph_equals_the_environments(agent: str) -> None:
+    alone = figures(agent)
     assert alone['speed'] != 0.0
-    assert figures(path, '--graph') == alone
+    assert figures(agent, '--graph') == alone
 
 
 def test_playing_subscribes_to_the_checkpoints_channels_and_learns_nothing(

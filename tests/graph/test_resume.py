@@ -27,16 +27,30 @@ EPISODES = 6
 EVERY = 2
 
 
+DDPG = (
+    'learner: {ddpg: {batch_size: 8, update_every: 4}, '
+    'actor: {hidden: [16, 16]}, critic: {hidden: [16, 16]}}'
+)
+SAC = 'learner: {algorithm: sac, sac: {hidden: [16, 16], batch_size: 8, update_every: 4}}'
+# A rollout ends amid an episode, and amid what is repeated after a cut.
+PPO = 'learner: {algorithm: ppo, ppo: {hidden: [16, 16], rollout_steps: 30, batch_size: 10}}'
+
+
 class CutError(RuntimeError):
     """Stands for whatever ends a run."""
 
 
 @pytest.fixture
-def goal(tmp_path: Path, spec) -> Callable[..., TrainRun.Goal]:
+def learner() -> str:
+    """Return the learner's section of the specification."""
+    return DDPG
+
+
+@pytest.fixture
+def goal(tmp_path: Path, spec, learner: str) -> Callable[..., TrainRun.Goal]:
     """Return a function that makes the goal of a short run, a checkpoint every two episodes."""
     (tmp_path / 'short.yaml').write_text(
-        'task: {time_limit_steps: 20}\nddpg: {batch_size: 8, update_every: 4}\n'
-        f'actor: {{hidden: [16, 16]}}\ncritic: {{hidden: [16, 16]}}\n'
+        f'task: {{time_limit_steps: 20}}\n{learner}\n'
         f'training: {{evaluation: 2, checkpoint_every: {EVERY}}}\n'
     )
 
@@ -115,6 +129,7 @@ def undisturbed(graph, worker: Worker, goal, tmp_path: Path) -> pd.DataFrame:
     return results(tmp_path / 'whole')
 
 
+@pytest.mark.parametrize('learner', [DDPG, SAC, PPO], ids=['ddpg', 'sac', 'ppo'])
 def test_a_cut_run_repeats_what_followed_its_checkpoint_and_no_more(
     graph, worker: Worker, goal, tmp_path: Path, undisturbed: pd.DataFrame
 ) -> None:
