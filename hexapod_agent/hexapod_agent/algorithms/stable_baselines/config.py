@@ -21,13 +21,15 @@ from hexapod_agent.algorithms.ranges import (
     PositiveFactor,
     Rows,
     Share,
+    Value,
 )
 from hexapod_agent.algorithms.update_groups import check_groups, group_size
 
 _ARTICLE_LAYERS = (400, 300)
 _DISCOUNT = 0.99
-# A step earns about 5: values of 500 are far from 0, where the library's critics start.
 _REWARD_SCALE = 0.1
+_INITIAL_VALUE = 530.0  # article.yaml's critic; from the library's 0 it takes 10,000 updates
+_DEVIATION = 0.3  # the library's 1 would fill the range of an action
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,7 @@ class OffPolicySection:
         update_every: Steps between two groups of updates.
         update_ratio: Updates per step; those of a group are a whole number.
         reward_scale: Factor of the reward as the critics learn it.
+        initial_value: Value that every action in every state has at first, in rewards as they are.
     """
 
     hidden: Layers = _ARTICLE_LAYERS
@@ -57,6 +60,7 @@ class OffPolicySection:
     update_every: Count = 24  # one stride, as DDPG's
     update_ratio: PositiveFactor = 1.0
     reward_scale: PositiveFactor = _REWARD_SCALE
+    initial_value: Value = _INITIAL_VALUE
 
 
 @dataclass(frozen=True)
@@ -82,10 +86,12 @@ class SacSection(OffPolicySection):
         temperature: Weight of the entropy at first.
         target_entropy: Entropy of the policy that the temperature is learned for, per number of
             the action.
+        deviation: Standard deviation of an action before tanh, at first.
     """
 
     temperature: PositiveFactor = 0.1
     target_entropy: Annotated[float, Interval(ge=-100.0, le=100.0)] = -1.0
+    deviation: PositiveFactor = _DEVIATION
 
 
 @dataclass(frozen=True)
@@ -105,6 +111,7 @@ class PpoSection:
         value_weight: Weight of the value's error in the loss.
         gradient_threshold: Largest L2 norm of the gradient, of all arrays together.
         reward_scale: Factor of the reward as the value learns it.
+        initial_value: Value that every state has at first, in rewards as they are.
         deviation: Standard deviation of an action at first.
     """
 
@@ -120,7 +127,8 @@ class PpoSection:
     value_weight: Factor = 0.5
     gradient_threshold: PositiveFactor = 0.5
     reward_scale: PositiveFactor = _REWARD_SCALE
-    deviation: PositiveFactor = 0.3  # the library's 1 would fill the range of an action
+    initial_value: Value = _INITIAL_VALUE
+    deviation: PositiveFactor = _DEVIATION
 
 
 @dataclass(frozen=True)

@@ -66,6 +66,13 @@ def int_seed(sequence: np.random.SeedSequence) -> int:
     return int(sequence.generate_state(1, np.uint64)[0])
 
 
+def fill_bias(module: nn.Module, value: float) -> None:
+    """Let the last affine layer of a module put out so much more at first."""
+    *_, last = (each for each in module.modules() if isinstance(each, nn.Linear))
+    with torch.no_grad():
+        last.bias.add_(value)
+
+
 Array = NDArray[np.float32]
 
 

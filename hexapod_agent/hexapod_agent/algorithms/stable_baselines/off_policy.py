@@ -21,6 +21,7 @@ from hexapod_agent.algorithms.stable_baselines.config import OffPolicySection
 from hexapod_agent.algorithms.stable_baselines.model import (
     Seen,
     completed,
+    fill_bias,
     int_seed,
     rate_schedule,
     restore,
@@ -84,11 +85,19 @@ class OffPolicyLearner(Learner):
         model = self.new_model(problem)
         model.replay_buffer = cast(Any, Samples(self._replay, batch, self._replay_generator))
         self.model = completed(model, problem, int_seed(networks))
+        self._set_level(section.initial_value * section.reward_scale)
         self._policy = self.prepare(self._generator)
         self._seen = Seen(self.model, self.logged)
         self.output = np.zeros(problem.action_size, np.float32)
         self._action: NDArray[np.float32] | None = None
         self._step = 0
+
+    def _set_level(self, value: float) -> None:
+        """Let all critics give every action such a value at first."""
+        critics: Any = self.model
+        for critic in (critics.critic, critics.critic_target):
+            for network in critic.q_networks:
+                fill_bias(network, value)
 
     @abstractmethod
     def new_model(self, problem: Problem) -> OffPolicyAlgorithm:

@@ -22,6 +22,7 @@ from hexapod_agent.algorithms.stable_baselines.model import (
     Seen,
     array_of,
     completed,
+    fill_bias,
     int_seed,
     policy_of,
     rate_schedule,
@@ -88,6 +89,7 @@ class PpoLearner(Learner):
         assert isinstance(self._rollout, Rollout)
         self._rollout.shuffle = self._shuffle
         network = self._model.policy
+        fill_bias(network.value_net, ppo.initial_value * ppo.reward_scale)
         self._policy = policy_of(
             network.mlp_extractor.policy_net, network.action_net, squash=False
         )

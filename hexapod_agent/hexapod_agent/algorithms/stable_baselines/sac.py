@@ -3,6 +3,7 @@
 
 """SAC: a policy with a spread that is rewarded for it, at a temperature that is learned."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from torch import Tensor, nn
 from hexapod_agent.algorithms.learner import Problem
 from hexapod_agent.algorithms.policies import MlpPolicy
 from hexapod_agent.algorithms.stable_baselines.config import SacConfig
-from hexapod_agent.algorithms.stable_baselines.model import layers_of, policy_of
+from hexapod_agent.algorithms.stable_baselines.model import fill_bias, layers_of, policy_of
 from hexapod_agent.algorithms.stable_baselines.off_policy import OffPolicyLearner
 from hexapod_agent.algorithms.update_groups import group_size
 
@@ -69,6 +70,7 @@ class SacLearner(OffPolicyLearner):
         spread: Any = SeededGaussian(actor.action_dist.action_dim, generator)
         actor.action_dist = spread
         assert isinstance(actor.log_std, nn.Module)
+        fill_bias(actor.log_std, math.log(self._sac.deviation))
         self._spread = layers_of(actor.log_std)[0]
         return policy_of(actor.latent_pi, actor.mu)
 

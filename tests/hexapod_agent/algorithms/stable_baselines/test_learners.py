@@ -113,6 +113,30 @@ def test_its_policy_is_the_librarys(trainer):
     assert drawn.std(axis=0).min() > 0.01
 
 
+def test_it_begins_at_its_level(library_config):
+    """Every action is worth 530 at first, a tenth of it to critics; the weights add a little."""
+    trainer = Trainer(library_config, SEED)
+    learner, size = trainer.learner, trainer.spec.size
+    seen = torch.rand(20, size, generator=torch.Generator().manual_seed(1)) * 2.0 - 1.0
+    if isinstance(learner, PpoLearner):
+        values = [learner._model.policy.predict_values(seen)]
+    else:
+        action = torch.zeros(20, learner.output.size)
+        critics = learner.model.critic, learner.model.critic_target
+        values = [value for critic in critics for value in critic(seen, action)]
+    for value in values:
+        assert (value - 53.0).abs().max() < 3.0
+
+
+def test_sac_begins_with_its_spread():
+    config = RunSpec.load(None, ['learner.algorithm=sac', 'learner.sac.deviation=0.2'])
+    learner = Trainer(config.observing('ABCDE'), SEED).learner
+    seen = np.zeros(config.observing('ABCDE').observed.size, np.float32)
+    drawn = np.arctanh([learner.act(seen, explore=True) for _ in range(2000)])
+    # The layer's weights spread it by a few hundredths of its logarithm; 2000 draws by 2 %.
+    assert np.exp(np.log(drawn.std(axis=0)).mean()) == pytest.approx(0.2, rel=0.1)
+
+
 def test_its_agent_acts_from_a_file_and_as_onnx(trainer, tmp_path):
     policy = trainer.learner.policy()
     # Actions of every size, also at the limits: PPO's output layer is drawn small.
