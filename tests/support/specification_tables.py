@@ -7,7 +7,6 @@ Values and their origins are those of article.yaml and its comments; meanings, u
 those of the dataclasses that check them.
 """
 
-import inspect
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass
@@ -148,12 +147,14 @@ def _limits(mark: Any) -> str:
 
 
 def _docs(config: type) -> dict[str, str]:
-    """Return what a dataclass says of its fields, below each or in its own docstring."""
-    listed = re.split(r'\nAttributes:\n', inspect.getdoc(config) or '')
-    if len(listed) == 1:
-        return field_docs(config)
-    entries = re.findall(r'^    (\w+): (.*(?:\n      .*)*)', listed[1], re.MULTILINE)
-    return {name: ' '.join(text.split()) for name, text in entries}
+    """Return what a dataclass and its bases say of their fields, below each or in a docstring."""
+    docs = field_docs(config)
+    for base in reversed(config.__mro__):
+        _, *listed = re.split(r'\n    Attributes:\n', base.__doc__ or '')
+        for text in listed:
+            entries = re.findall(r'^        (\w+): (.*(?:\n          .*)*)', text, re.MULTILINE)
+            docs |= {name: ' '.join(words.split()) for name, words in entries}
+    return docs
 
 
 def _comments() -> dict[str, Comment]:
