@@ -6,6 +6,7 @@
 import argparse
 import csv
 import math
+import shlex
 import sys
 from collections.abc import Iterator, Sequence
 from itertools import islice
@@ -31,6 +32,7 @@ CHECKPOINT = 'checkpoint.pt'  # with the replay buffer: to resume
 AGENT = 'agent.pt'  # the actor alone: to evaluate and to keep
 LOG = 'episodes.csv'
 EVALUATION = 'evaluation.csv'  # the same of the episodes without noise at the end
+_EVALUATE = 'ros2 run hexapod_agent evaluate'
 EVENTS = 'tensorboard'  # folder of the same curves, for `tensorboard --logdir`
 
 
@@ -161,6 +163,7 @@ def main(args: Sequence[str] | None = None) -> None:
         print(f'evaluation return {evaluation_return:.1f}, without noise, mean of {starts} starts')
     print(f'agent: {options.out / AGENT}')
     print(f'to resume: {options.out / CHECKPOINT}')
+    print(f'next:\n  {_EVALUATE} {shlex.quote(str(options.out / AGENT))} --starts 50')
 
 
 def _parser() -> CommandLine:

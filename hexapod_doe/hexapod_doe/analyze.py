@@ -15,12 +15,18 @@ from hexapod_doe.analysis.analysis import analyse
 from hexapod_doe.analysis.analysis_json import write_json
 from hexapod_doe.analysis.analyze_arguments import build_parser
 from hexapod_doe.campaigns.campaign import PLAN_FILE
-from hexapod_doe.campaigns.next_steps import after_analysis
+from hexapod_doe.campaigns.next_steps import (
+    after_analysis,
+    after_confirmation,
+    after_single_runs,
+    after_tour,
+)
 from hexapod_doe.designs.plan_file import PlanError
 from hexapod_doe.errors import AnalysisError, BagError, TableError
 from hexapod_doe.records.options import Options
 from hexapod_doe.records.results import Analysis
 from hexapod_doe.reporting.report import write_report
+from hexapod_doe.reporting.text import is_tour
 from hexapod_doe.reporting.words import set_text
 from hexapod_doe.stages import stage
 from hexapod_doe.tables.bag_response import ARTICLE_RESPONSE
@@ -128,15 +134,24 @@ def _confirmation_runs(
 def _next_steps(
     args: argparse.Namespace, analysis: Analysis, arguments: Sequence[str] | None
 ) -> tuple[str, ...]:
-    """Return what to type next, for a campaign whose model states intervals."""
+    """Return what to type next; nothing where no campaign of a plan was analysed."""
+    campaigns = [path for path in args.bags if (path / PLAN_FILE).is_file()]
+    first = next((path for path in campaigns if path.resolve().name == analysis.title), None)
+    if first is None:
+        return ()
+    if is_tour(analysis):
+        return tuple(after_tour())
     found = analysis.confirmation
-    if found is None or args.confirm or any(check.observed for check in found.checks):
+    if found is None:
+        return tuple(after_single_runs(first))
+    if any(check.observed for check in found.checks):
+        levels = next(p.levels for p in analysis.predictions if p.label == analysis.choice)
+        return tuple(after_confirmation(first, list(levels.values())))
+    if args.confirm:
         return ()
     again = shlex.join(['ros2', 'run', 'hexapod_doe', 'analyze', *(arguments or sys.argv[1:])])
     sets = [check.label for check in found.checks]
-    campaigns = [path for path in args.bags if (path / PLAN_FILE).is_file()]
-    first = next((path for path in campaigns if path.resolve().name == analysis.title), None)
-    return tuple(after_analysis(first, sets, again)) if first else ()
+    return tuple(after_analysis(first, sets, again))
 
 
 if __name__ == '__main__':

@@ -51,7 +51,7 @@ def test_run_leaves_log_and_checkpoints(config_file, tmp_path, capsys):
     printed = capsys.readouterr().out.replace('\n', '')
     average = checkpoint.load(out / train.CHECKPOINT).average_return
     assert f'final average reward {average:.1f}' in printed
-    assert train.AGENT in printed
+    assert printed.endswith(f'evaluate {out / train.AGENT} --starts 50')
 
 
 def test_resumed_log_is_the_uninterrupted_one(config_file, tmp_path):

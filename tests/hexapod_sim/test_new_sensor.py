@@ -7,22 +7,14 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from page_commands import ROOT, edited
 
-import hexapod_sim
-
-ROW = """    Channel(
-        'H', 'magnetic field', ('magnetic_field',), 'sensor_msgs/msg/MagneticField',
-        (Field('magnetic_field', 'magnetic_field', 3, 'T', 1.0),), 'magnetometer',
-        frames=(IMU_FRAME,),
-    ),
-"""
-LINE = '<magnetometer name="magnetic_field" site="imu_link"/>\n  '
+PAGE = ROOT / 'docs' / 'tutorials' / 'my_sensor.md'
 LOOK = """
 import json
 import numpy as np
@@ -60,18 +52,9 @@ print(json.dumps({
 
 @pytest.fixture
 def found(tmp_path: Path) -> dict:
-    """Return what a process finds that has the row and the line in its copy of the package."""
-    package = tmp_path / 'hexapod_sim'
-    ignored = shutil.ignore_patterns('__pycache__')
-    shutil.copytree(Path(hexapod_sim.__file__).parent, package, ignore=ignored)
-    for name, mark, text in (
-        ('sensor_table.py', ')  # fmt: skip\nLETTERS', ROW),
-        ('hexapod.xml', '</sensor>', LINE),
-    ):
-        before = (package / name).read_text(encoding='utf-8')
-        assert before.count(mark) == 1
-        (package / name).write_text(before.replace(mark, text + mark), encoding='utf-8')
-    support = Path(__file__).resolve().parents[1] / 'support'
+    """Return what a process finds that has the tutorial's row and line in its package."""
+    edited(PAGE, 'hexapod_sim', tmp_path)
+    support = ROOT / 'tests' / 'support'
     path = os.pathsep.join((str(tmp_path), str(support), os.environ.get('PYTHONPATH', '')))
     command = [sys.executable, '-c', LOOK]
     environment = os.environ | {'PYTHONPATH': path}

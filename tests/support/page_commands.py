@@ -9,6 +9,7 @@ registry. What is never run is parsed all the same.
 """
 
 import re
+import shutil
 import subprocess
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -97,6 +98,17 @@ def commands(block: Block, folder: Path) -> list[list[str]]:
         raise ValueError(f'{block}: {told.stderr.strip()}')
     words = calls.read_text().split('\0') if calls.exists() else []
     return list(_split(words))
+
+
+def edited(page: Path, package: str, folder: Path) -> None:
+    """Copy a package into a folder, with the edits of it that a page shows as a diff."""
+    source, ignored = ROOT / package / package, shutil.ignore_patterns('__pycache__')
+    shutil.copytree(source, folder / package, ignore=ignored)
+    for block in blocks(page, 'diff'):
+        subprocess.run(
+            ['git', 'apply', '-p2', '--whitespace=nowarn'],
+            cwd=folder, input=block.text, text=True, check=True,
+        )  # fmt: skip
 
 
 def stand_ins(folder: Path, scripts: Mapping[str, str] | None = None) -> None:

@@ -3,9 +3,14 @@
 
 """What to type next: from a plan over its runs and their analysis to the confirmation."""
 
+import json
 import shlex
 from collections.abc import Sequence
+from dataclasses import replace
+from importlib.resources import files
 from pathlib import Path
+
+from hexapod_agent.specification.run_spec import RunSpec
 
 from hexapod_doe.bags.run_identity import EPISODES, differences
 from hexapod_doe.campaigns.campaign import PLAN_FILE
@@ -13,10 +18,12 @@ from hexapod_doe.campaigns.folder import read_progress
 from hexapod_doe.campaigns.plan_copy import CONFIG_FILE
 from hexapod_doe.campaigns.progress import Progress, Run, State
 from hexapod_doe.campaigns.row import read_rows
+from hexapod_doe.cores import usable_cores
 from hexapod_doe.designs.plan_file import read_plan
 
 CONFIRM_FOLDER = 'confirm'
 """Where a campaign's confirmation runs are."""
+_LENGTH = 'training.episodes'
 _RUN = 'ros2 run hexapod_doe'
 _FLEET = '/fleet'
 
@@ -55,6 +62,45 @@ def after_analysis(folder: Path, sets: Sequence[str], again: str) -> list[str]:
     plain = ','.join('none' if label == '(none)' else label for label in sets)
     line = f'{_RUN} plan confirm {_quoted(folder)} --sets {plain}'
     return [line, _train(folder, progress, _confirm_plan(folder)), again]
+
+
+def after_tour() -> list[str]:
+    """Return the line to type after a campaign that is too short to decide by."""
+    swift = Path(str(files('hexapod_agent') / 'swift.yaml')).resolve()
+    near = swift.relative_to(Path.cwd()) if swift.is_relative_to(Path.cwd()) else swift
+    cores = usable_cores()
+    return [f'{_RUN} plan hours --hours 8 --workers {cores} --config {_quoted(near)}']
+
+
+def after_single_runs(folder: Path) -> list[str]:
+    """Return the line to type after a campaign that leaves no error to state intervals with."""
+    return [f'{_RUN} plan hours --hours 8 --workers {usable_cores()} --measured {_quoted(folder)}']
+
+
+def after_confirmation(folder: Path, levels: Sequence[int]) -> list[str]:
+    """Return the lines that train an agent with the set that a campaign chose, and judge it.
+
+    Args:
+        folder: of the campaign.
+        levels: of the set, -1 or 1 for each factor of the plan.
+    """
+    treatments = read_plan(folder / PLAN_FILE).treatments
+    if (folder / CONFIG_FILE).is_file():
+        changed = treatments.base.changed_by(folder / CONFIG_FILE)
+        treatments = replace(treatments, base=changed)
+    spec = treatments.spec(levels)
+    begun = [run for run in read_progress(folder).runs.values() if run.settings]
+    episodes = max((run.planned for run in begun), default=spec.training.episodes)
+    words = ['ros2', 'run', 'hexapod_agent', 'train', '--seed', '1', '--episodes', str(episodes)]
+    words += ['--observations', spec.letters] if spec.letters else []
+    for key, (value, _) in spec.differences(RunSpec.load()).items():
+        told = key == _LENGTH or key.startswith('observations.') or value is None
+        words += [] if told else ['--set', f'{key}={json.dumps(value)}']
+    out = f'runs/{treatments.label(levels)}'
+    return [
+        shlex.join([*words, '--out', out]),
+        f'ros2 run hexapod_agent evaluate {out}/agent.pt --starts 50',
+    ]
 
 
 def after_confirm(folder: Path, plan: Path) -> list[str]:

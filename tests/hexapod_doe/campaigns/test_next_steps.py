@@ -9,8 +9,13 @@ import shlex
 from pathlib import Path
 
 import pytest
+import understood
+import yaml
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_doe.campaign_status import main as campaign_status
+from hexapod_doe.campaigns.next_steps import after_confirmation
 from hexapod_doe.campaigns.row import read_rows
+from hexapod_doe.reporting import text
 
 from hexapod_doe import analyze, plan
 
@@ -51,6 +56,7 @@ def test_the_lines_lead_from_the_plan_to_the_judged_confirmation(
     campaign, train, tmp_path, capsys, monkeypatch
 ):
     monkeypatch.setattr(analyze, 'write_report', lambda analysis, out: out / 'index.html')
+    monkeypatch.setattr(text, 'TOUR_EPISODES', 3)
     launch = 'ros2 launch hexapod_bringup campaign.launch.xml plan:='
     assert status(campaign, capsys) == [f'{launch}{campaign}/plan.csv']
     train(campaign)
@@ -73,12 +79,51 @@ def test_the_lines_lead_from_the_plan_to_the_judged_confirmation(
     assert line == f'ros2 run hexapod_doe analyze {campaign} --out {campaign}/report'
 
     assert analyze.main(options) == 0
-    assert lines(capsys.readouterr().out) == []
+    learn, judge = lines(capsys.readouterr().out)
+    assert learn.startswith('ros2 run hexapod_agent train --seed 1 --episodes 3 --observations ')
+    assert judge.startswith('ros2 run hexapod_agent evaluate runs/')
+    for line in (learn, judge):
+        understood.check(shlex.split(line))
     record = json.loads((tmp_path / 'out' / 'analysis.json').read_text())
     checks = {check['label']: check for check in record['confirmation']['checks']}
     assert all(len(check['observed']) == 2 for check in checks.values())
     assert checks['C']['passed']
     assert record['design']['runs'] == 12  # those that confirm are not fitted
+
+
+def test_a_tour_leads_to_a_campaign_that_is_long_enough(
+    campaign, train, tmp_path, capsys, monkeypatch
+):
+    monkeypatch.setattr(analyze, 'write_report', lambda analysis, out: out / 'index.html')
+    train(campaign)
+    assert analyze.main([str(campaign), '--factors', 'A,B,C', '--out', str(tmp_path / 'o')]) == 0
+    (line,) = lines(capsys.readouterr().out)
+    assert 'plan hours --hours 8' in line
+    plan.main(shlex.split(line)[4:])
+    assert 'Proposed:' in capsys.readouterr().out
+
+
+def test_the_agent_of_a_confirmed_case_has_the_values_of_its_runs(tmp_path):
+    entries = [
+        {'name': 'E', 'key': 'observations.E', 'low': False, 'high': True},
+        {'name': 'payload', 'key': 'robot.payload', 'low': 0.0, 'high': 1.2},
+        {'name': 'hidden', 'key': 'learner.actor.hidden', 'low': [16, 8], 'high': [32]},
+    ]
+    file, out = tmp_path / 'factors.yaml', tmp_path / 'mine' / 'plan.csv'
+    file.write_text(yaml.safe_dump(entries))
+    plan.main(['--factors', str(file), '--design', 'full', '--set', 'training.episodes=7',
+               '--out', str(out)])  # fmt: skip
+    (tmp_path / 'mine' / 'config.yaml').write_text('task: {line_y: 0.1}')
+    learn, judge = after_confirmation(out.parent, [1, 1, -1])
+    words = shlex.split(learn)
+    understood.check(words)
+    settings = [words[index + 1] for index, word in enumerate(words) if word == '--set']
+    spec = RunSpec.load(None, settings)
+    assert words[words.index('--observations') + 1] == 'E'
+    assert words[words.index('--episodes') + 1] == '7'
+    assert (spec.robot.payload, spec.learner.actor.hidden) == (1.2, (16, 8))
+    assert spec.task.line_y == 0.1
+    understood.check(shlex.split(judge))
 
 
 def test_sets_are_those_that_the_analysis_puts_first(campaign, train, capsys):
