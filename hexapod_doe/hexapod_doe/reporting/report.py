@@ -14,7 +14,7 @@ from pathlib import Path
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
 from hexapod_doe.records.results import Analysis, DesignSummary
-from hexapod_doe.reporting import text
+from hexapod_doe.reporting import next_steps, text
 from hexapod_doe.reporting.chapters import CHAPTERS
 from hexapod_doe.reporting.figures.chart import Chart
 from hexapod_doe.reporting.figures.style import theme_css
@@ -74,6 +74,7 @@ def render(analysis: Analysis, chapters: Iterable[Section]) -> str:
         analysis=analysis,
         sections=list(chapters),
         text=text,
+        next_steps=next_steps,
         chosen=chosen,
         words=words(design),
         labels={f: _label(design, f, chosen.levels[f]) for f in design.factors},

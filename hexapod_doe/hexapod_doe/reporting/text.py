@@ -54,20 +54,6 @@ def is_tour(analysis: Analysis) -> bool:
     return length is not None and length < TOUR_EPISODES
 
 
-def next_steps_lead(analysis: Analysis) -> str:
-    """Return what the lines to type next are for."""
-    if is_tour(analysis):
-        return 'A campaign that is long enough to decide by: what a night here pays for.'
-    if analysis.confirmation is None:
-        return 'More runs of each case tell how much runs differ by chance.'
-    if any(check.observed for check in analysis.confirmation.checks):
-        return 'An agent with the set that was chosen, and what it does from other starts.'
-    return (
-        'New runs with seeds of their own confirm the choice, by the rule that the plan fixed '
-        'before the first run.'
-    )
-
-
 def caution(analysis: Analysis) -> str:
     """Return the first line of a report on little data; empty where there is enough."""
     length, replicates = episodes(analysis), analysis.design.replicates[1]
