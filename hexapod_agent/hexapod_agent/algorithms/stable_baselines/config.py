@@ -68,11 +68,13 @@ class Td3Section(OffPolicySection):
     """The update of TD3 (Fujimoto et al. 2018).
 
     Attributes:
+        learning_rate: Adam's step size, of all networks.
         policy_delay: Updates of the critics for each one of the actor and the targets.
         target_noise: Standard deviation of the noise on the target's action.
         target_noise_limit: Where that noise is clipped.
     """
 
+    learning_rate: Factor = 1e-3
     policy_delay: Count = 2
     target_noise: Factor = 0.2
     target_noise_limit: Factor = 0.5

@@ -22,6 +22,9 @@ from hexapod_agent import export
 
 from .conftest import SEED, advance
 
+# Of Fujimoto et al. 2018; Haarnoja et al. 2018; stable-baselines3.
+RATES = {'td3': 1e-3, 'sac': 3e-4, 'ppo': 3e-4}
+
 
 def leaves(value, path=''):
     """Yield every leaf of a nested state, by its path."""
@@ -68,7 +71,7 @@ def test_it_learns_and_resumes_to_the_last_bit(library_config, run_file):
     parameters = resumed.learner.state_dict()['model']['parameters']
     optimizers = [state for name, state in parameters.items() if 'optimizer' in name]
     rates = {group['lr'] for state in optimizers for group in state['param_groups']}
-    assert rates == {0.5 * 3e-4}  # of the last episode
+    assert rates == {0.5 * RATES[library_config.learner.algorithm]}  # of the last episode
 
 
 def test_an_episode_that_was_left_is_dropped(library_config):
@@ -213,10 +216,10 @@ def test_values_that_do_not_go_together_are_refused(library_config):
 
 def test_sections_are_those_of_the_algorithm_in_any_order(library_config):
     name = library_config.learner.algorithm
-    settings = [f'learner.{name}.learning_rate=1e-3', f'learner.algorithm={name}']
+    settings = [f'learner.{name}.learning_rate=2e-3', f'learner.algorithm={name}']
     spec = RunSpec.load(None, settings)
     assert RunSpec.load(None, reversed(settings)) == spec
-    assert spec.value(f'learner.{name}.learning_rate') == 1e-3
+    assert spec.value(f'learner.{name}.learning_rate') == 2e-3
     assert spec.value(f'learner.{name}.hidden') == (400, 300)
     assert RunSpec.from_text(spec.to_text(), 'its own text') == spec
     assert 'ddpg' not in spec.to_mapping()['learner']
