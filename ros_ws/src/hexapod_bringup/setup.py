@@ -14,6 +14,7 @@ setup(
     maintainer='Hexapod team',
     maintainer_email='team@hexapod.invalid',
     packages=find_packages(exclude=['test']),
+    package_data={f'{NAME}.watching': ['page.html']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),
@@ -32,6 +33,7 @@ setup(
             'doctor = hexapod_bringup.doctor:main',
             'layout = hexapod_bringup.layout:main',
             'realtime_report = hexapod_bringup.realtime_report:main',
+            'watch = hexapod_bringup.executables:watch',
             'worker_node = hexapod_bringup.executables:worker_node',
         ],
     },

@@ -6,4 +6,5 @@
 from hexapod_node.executable import executable
 
 description_node = executable('hexapod_bringup.description_node')
+watch = executable('hexapod_bringup.watch')
 worker_node = executable('hexapod_bringup.worker_node')
