@@ -23,8 +23,8 @@ pytestmark = pytest.mark.graph
 def graph() -> Iterator[tuple[Board, WatchNode, SimNode, Callable[..., None]]]:
     """A sim in real time below the watch's namespace, and what serves both until something is."""
     begin(['--ros-args', '-r', 'sim:__ns:=/hall/w1', '-r', 'watch:__ns:=/hall',
-           '-r', 'watch_sampler:__ns:=/hall', '-p', 'sim:sync:=realtime',
-           '-p', 'sim:scene.name:=slope'])  # fmt: skip
+           '-r', 'watch_sampler:__ns:=/hall', '-p', 'sync:=realtime',
+           '-p', 'scene.name:=slope'])  # fmt: skip
     board, executor = Board(), EventsExecutor()
     nodes = [SimNode(), WatchNode(board)]
     for node in nodes:
