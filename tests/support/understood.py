@@ -16,6 +16,7 @@ from unittest import mock
 from hexapod_agent.specification.run_spec import RunSpec
 from page_commands import ROOT
 from ros2_mini.cli import build_parser
+from ros2_mini.errors import CommandError
 from ros2_mini.launch.arguments import declarations, parse_launch_arguments
 from ros2_mini.packages import find_in_share
 
@@ -42,7 +43,7 @@ def check(words: Sequence[str]) -> None:
         _CHECKS[program](given)
     except SystemExit as error:
         raise NotUnderstoodError(f'{" ".join(words)}: ends with {error.code}') from error
-    except (ValueError, LookupError, OSError) as error:
+    except (ValueError, LookupError, OSError, CommandError) as error:
         raise NotUnderstoodError(f'{" ".join(words)}: {error}') from error
 
 
