@@ -63,20 +63,8 @@ def test_what_no_shell_runs_is_found(text: str, tmp_path: Path) -> None:
 
 
 def test_sizes_become_small_and_nothing_else_changes() -> None:
-    plan = small(
-        [
-            'ros2',
-            'run',
-            'hexapod_doe',
-            'plan',
-            '--design',
-            'quarter',
-            '--replicates',
-            '10',
-            '--seed',
-            '1',
-        ]
-    )
+    line = ['ros2', 'run', 'hexapod_doe', 'plan', '--design', 'quarter', '--replicates', '10']
+    plan = small([*line, '--seed', '1'])
     assert plan[4:10] == ['--design', 'eighth', '--replicates', '2', '--seed', '1']
     hours = ['ros2', 'run', 'hexapod_doe', 'plan', 'hours', '--hours', '8', '--episodes', '300']
     assert small(hours) == hours
