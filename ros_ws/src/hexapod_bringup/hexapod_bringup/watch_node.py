@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticStatus
+from hexapod_agent.specification.run_spec import ConfigError, RunSpec
 from hexapod_interfaces.msg import CampaignStatus, EpisodeResult
 from hexapod_node.coroutines import ServiceUnavailableError, call, start
 from hexapod_node.diagnostics import Diagnostics, Health
@@ -23,18 +24,24 @@ from hexapod_node.qos import DRIVER, LATCHED
 from hexapod_node.timers import call_every, call_later
 from hexapod_sim.scenes.table import SceneConfig
 from hexapod_sim.variations.table import RobotConfig
-from hexapod_sim.world import World
 from rcl_interfaces.srv import GetParameters
 from rclpy.parameter import parameter_value_to_python
 from rclpy.subscription import Subscription
 
 from hexapod_bringup.watch_sampler import TRUTH, Sampler, joined
 from hexapod_bringup.watching.board import ODOMETRY, OUTCOME, Board, Robot
-from hexapod_bringup.watching.records import outcome_record, pose_of, result_record, stamp_s
+from hexapod_bringup.watching.records import (
+    MOST_TERMS,
+    outcome_record,
+    pose_of,
+    result_record,
+    stamp_s,
+)
 from hexapod_bringup.watching.signals import JOINT_STATES, SIGNALS
 
 EPISODES = 'episode_result'
 _STATUS_TYPE = 'hexapod_interfaces/msg/CampaignStatus'
+_MOST_ROBOTS = 64  # whoever is in the domain may publish under any name
 _LOOK_PERIOD_S = 1.0
 _WORLD_PERIOD_S = 5.0
 _ANSWER_S = 2.0
@@ -75,7 +82,8 @@ class WatchNode(Node):
     def _look(self) -> None:
         """Find robots and managers, and hear of each robot what somebody looks at."""
         topics = dict(self.get_topic_names_and_types())
-        for robot in self._robots(topics) - self._board.robots.keys():
+        room = _MOST_ROBOTS - len(self._board.robots)
+        for robot in sorted(self._robots(topics) - self._board.robots.keys())[:room]:
             with self._board.lock:
                 self._board.robots[robot] = Robot(robot)
             self._results[robot] = self.create_subscription(
@@ -145,7 +153,7 @@ class WatchNode(Node):
             self._measure(robot, stamp_s(messages[-1]))
             robot.outcome = outcome_record(messages[-1])
             for message in messages:
-                values = [*message.term_values, message.reward]
+                values = [*message.term_values[:MOST_TERMS], message.reward]
                 robot.track(OUTCOME).add(stamp_s(message), values)
         else:
             for message in messages:
@@ -180,7 +188,8 @@ class WatchNode(Node):
             'robot': config_table(RobotConfig.of_article(), 'robot'),
         }
         names = [parameter.name for table in tables.values() for parameter in table]
-        found = await self._ask_parameters(joined(robot, 'sim'), names)
+        service = joined(robot, 'sim')
+        found = await self._ask_parameters(service, names)
         if not found:
             return
         values: dict[str, dict[str, Any]] = {'scene': {}, 'robot': {}}
@@ -188,8 +197,8 @@ class WatchNode(Node):
             section, _, key = name.partition('.')
             values[section][key] = value
         try:
-            world = World(SceneConfig(**values['scene']), RobotConfig(**values['robot']))
-        except (TypeError, ValueError):  # a sim of another version
+            world = RunSpec.load().changed(values, service).world
+        except ConfigError:  # a sim of another version, or whoever says to be one
             return
         with self._board.lock:
             self._board.robots[robot].world = world

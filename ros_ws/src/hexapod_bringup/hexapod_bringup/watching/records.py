@@ -9,6 +9,9 @@ from typing import Any
 
 from hexapod_bringup.watching.board import Pose
 
+MOST_TERMS = 64
+"""Of a reward or of metrics; what a message has beyond them is left out."""
+
 
 def stamp_s(message: Any) -> float:
     """Return the stamp of a message, s."""
@@ -52,7 +55,8 @@ def result_record(message: Any) -> dict[str, Any]:
 
 def named(names: Sequence[str], values: Sequence[float]) -> dict[str, float | None]:
     """Return values by name."""
-    return {name: finite(value) for name, value in zip(names, values, strict=False)}
+    pairs = zip(names[:MOST_TERMS], values[:MOST_TERMS], strict=False)
+    return {name: finite(value) for name, value in pairs}
 
 
 def finite(value: float) -> float | None:

@@ -125,7 +125,7 @@ class Studio:
         try:
             while not self._closing.wait(1.0 / PICTURES_PER_SECOND):
                 self._draw_all()
-        except FilmError as error:
+        except (FilmError, ValueError, mujoco.FatalError) as error:
             self.fault = str(error)
         finally:
             for stage in self._stages.values():
