@@ -82,9 +82,10 @@ def test_nothing_is_loaded_from_elsewhere(site: Path) -> None:
 def test_links_out_of_the_docs_lead_to_pages_of_the_site(site: Path) -> None:
     shown = (site / 'source/hexapod_sim/hexapod_sim/article.yaml.html').read_text(encoding='utf-8')
     assert 'closeness_weight' in shown
-    scenarios = (site / 'specification.html').read_text(encoding='utf-8')
-    assert 'href="source/hexapod_sim/hexapod_sim/article.yaml.html"' in scenarios
-    assert 'href="index.html#sensors"' in scenarios
+    keys = (site / 'specification.html').read_text(encoding='utf-8')
+    assert 'href="source/hexapod_sim/hexapod_sim/article.yaml.html"' in keys
+    study = (site / 'study.html').read_text(encoding='utf-8')
+    assert 'href="bags/study/index.html"' in study
 
 
 @needs_builder
