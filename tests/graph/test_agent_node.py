@@ -45,10 +45,11 @@ def short(tmp_path) -> str:
 
 @pytest.fixture
 def swift(tmp_path) -> str:
-    """Return swift.yaml with short episodes and small batches."""
+    """Return swift.yaml with short episodes and small batches; its actor waits for one episode."""
     changes = yaml.safe_load((files('hexapod_agent') / 'swift.yaml').read_text())
     changes['task'] = {'time_limit_steps': 60}
     changes['learner']['ddpg'] |= {'batch_size': 32, 'update_every': 8}
+    changes['learner']['actor']['waits'] = 3
     changes['training'] |= {'episodes': 3, 'evaluation': 2}
     path = tmp_path / 'swift.yaml'
     path.write_text(yaml.safe_dump(changes))

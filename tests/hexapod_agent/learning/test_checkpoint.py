@@ -5,6 +5,7 @@
 
 import pickle
 from functools import partial
+from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,8 @@ from hexapod_agent.deployment.agent_file import CheckpointError
 from hexapod_agent.deployment.sealed_file import write_sealed
 from hexapod_agent.environment.env import HexapodLine
 from hexapod_agent.learning import checkpoint
+from hexapod_agent.learning.training import Trainer
+from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_agent.train import train_episode
 
 AGENTS = Path(__file__).parents[3] / 'ros_ws' / 'src' / 'hexapod_bringup' / 'agents'
@@ -55,6 +58,26 @@ def test_resumed_run_equals_the_uninterrupted_one(make_trainer, tmp_path, reques
     checkpoint.save(tmp_path / 'a.pt', part)
     resumed = checkpoint.load(tmp_path / 'a.pt')
     advance(resumed, 2)
+    assert resumed.returns == whole.returns
+    assert_same(resumed, whole)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(1200)
+@pytest.mark.parametrize('cut', [12, 22])
+def test_swift_yaml_resumes_while_its_actor_waits_and_after_it(tmp_path, cut: int):
+    """Its actor waits for 1500 updates, 75 an episode: it moves from episode 20 on."""
+    config = RunSpec.load(files('hexapod_agent') / 'swift.yaml').observing('ABCDE')
+    whole, part = Trainer(config, 3), Trainer(config, 3)
+    before = whole.learner.policy().layers[0][0].copy()
+    advance(whole, 20)
+    assert np.array_equal(whole.learner.policy().layers[0][0], before)
+    advance(whole, 4)
+    assert not np.array_equal(whole.learner.policy().layers[0][0], before)
+    advance(part, cut)
+    checkpoint.save(tmp_path / 'a.pt', part)
+    resumed = checkpoint.load(tmp_path / 'a.pt')
+    advance(resumed, 24 - cut)
     assert resumed.returns == whole.returns
     assert_same(resumed, whole)
 
