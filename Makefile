@@ -34,7 +34,7 @@ $(VENV)/.ready: requirements.txt requirements-ros.txt constraints.txt | other-ro
 
 # What only tests and linters need, a demo does not wait for.
 $(VENV)/.dev: $(VENV)/.ready requirements-dev.txt
-	@.ci/libraries $(VENV) 'what tests and linters need' -r requirements-dev.txt -c constraints.txt
+	@.ci/libraries $(VENV) 'what tests and linters need (57 MB to download)' -r requirements-dev.txt -c constraints.txt
 	@touch $@
 
 ros_ws/install/.ready: $(VENV)/.ready $(INTERFACES) $(INSTALLED) | other-ros
