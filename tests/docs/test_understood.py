@@ -24,6 +24,7 @@ from small_sizes import small
         'ros2 run hexapod_doe player_node --gone',
         'ros2 launch hexapod_bringup campaign.launch.xml gone:=1',
         'ros2 launch hexapod_bringup gone.launch.xml',
+        'ros2 run hexapod_bringup watch --gone',
         'ros2 topic gone',
         'ros2 bag info --gone bags/sample',
         'make gone',

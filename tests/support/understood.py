@@ -21,6 +21,8 @@ from ros2_mini.launch.arguments import declarations, parse_launch_arguments
 from ros2_mini.packages import find_in_share
 
 _ROS_ARGS = '--ros-args'
+_WITH_OPTIONS = {'watch': 'hexapod_bringup.watch:main'}
+"""Nodes that have options of their own, before those of ROS."""
 _NODES = 'nodes.executables', 'hexapod_bringup.executables'
 
 
@@ -80,7 +82,7 @@ def _launch(package: str, file: str, given: Sequence[str]) -> None:
 
 
 def _run(package: str, executable: str, *given: str) -> None:
-    target = console_main(package, executable)
+    target = _WITH_OPTIONS.get(executable) or console_main(package, executable)
     if any(name in target for name in _NODES):
         _node(executable, given)
     else:

@@ -29,9 +29,9 @@ _FLEET = '/fleet'
 
 
 def after_status(folder: Path, progress: Progress) -> list[str]:
-    """Return the lines to type after a look at a campaign; none while it runs."""
+    """Return the lines to type after a look at a campaign: to watch it while it runs."""
     if progress.having(State.RUNNING):
-        return []
+        return [f'ros2 run hexapod_bringup watch {_quoted(folder)}']
     if not progress.complete:
         return (
             [] if progress.having(State.OTHER) else [_train(folder, progress, folder / PLAN_FILE)]

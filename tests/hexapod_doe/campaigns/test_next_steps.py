@@ -6,6 +6,7 @@
 import json
 import re
 import shlex
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,9 @@ import understood
 import yaml
 from hexapod_agent.specification.run_spec import RunSpec
 from hexapod_doe.campaign_status import main as campaign_status
-from hexapod_doe.campaigns.next_steps import after_confirmation
+from hexapod_doe.campaigns.folder import read_progress
+from hexapod_doe.campaigns.next_steps import after_confirmation, after_status
+from hexapod_doe.campaigns.progress import State
 from hexapod_doe.campaigns.row import read_rows
 from hexapod_doe.reporting import text
 
@@ -124,6 +127,14 @@ def test_the_agent_of_a_confirmed_case_has_the_values_of_its_runs(tmp_path):
     assert (spec.robot.payload, spec.learner.actor.hidden) == (1.2, (16, 8))
     assert spec.task.line_y == 0.1
     understood.check(shlex.split(judge))
+
+
+def test_a_campaign_that_runs_is_watched(campaign):
+    progress = read_progress(campaign)
+    runs = {name: replace(run, state=State.RUNNING) for name, run in progress.runs.items()}
+    (line,) = after_status(campaign, replace(progress, runs=runs))
+    assert line == f'ros2 run hexapod_bringup watch {campaign}'
+    understood.check(shlex.split(line))
 
 
 def test_sets_are_those_that_the_analysis_puts_first(campaign, train, capsys):
