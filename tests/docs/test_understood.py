@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 import understood
-from page_commands import ROOT, Block, commands
+from page_commands import ROOT, Block, commands, typed
 from small_sizes import small
 
 
@@ -61,6 +61,11 @@ def test_a_shell_makes_the_words(tmp_path: Path) -> None:
 def test_what_no_shell_runs_is_found(text: str, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r'README\.md:1'):
         commands(Block(ROOT / 'README.md', 1, 'bash', text, 'quick'), tmp_path)
+
+
+def test_of_a_session_what_is_typed_is_read() -> None:
+    assert typed('$ make demo\nprinted\n$ make test\n') == 'make demo\nmake test\n'
+    assert typed('make demo\n') == 'make demo\n'
 
 
 def test_sizes_become_small_and_nothing_else_changes() -> None:

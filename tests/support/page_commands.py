@@ -68,7 +68,13 @@ def _blocks(page: Path) -> Iterator[Block]:
     without = _FENCED.sub(lambda match: '\n' * match[0].count('\n'), text)
     for match in _INDENTED.finditer(without):
         plain = re.sub(r'^ {4}', '', match[2], flags=re.MULTILINE)
-        yield Block(page, _line(without, match), 'bash', plain, match[1] or QUICK)
+        yield Block(page, _line(without, match), 'bash', typed(plain), match[1] or QUICK)
+
+
+def typed(code: str) -> str:
+    """Return what is typed of a session that also shows what is printed; all of another block."""
+    lines = [line.removeprefix('$ ') for line in code.splitlines(True) if line.startswith('$ ')]
+    return ''.join(lines) if code.startswith('$ ') else code
 
 
 def _line(text: str, match: re.Match[str]) -> int:
