@@ -8,7 +8,15 @@ import time
 
 import pytest
 from hexapod_interfaces.srv import ResetEpisode
-from hexapod_node.coroutines import ServiceUnavailableError, call, in_thread, sleep, start, until
+from hexapod_node.coroutines import (
+    ServiceUnavailableError,
+    call,
+    in_thread,
+    sleep,
+    start,
+    until,
+    until_lost,
+)
 from rclpy.task import Future
 
 pytestmark = pytest.mark.graph
@@ -75,3 +83,19 @@ def test_error_of_the_work_is_raised_where_it_is_awaited(graph) -> None:
 
     with pytest.raises(OSError, match='disk full'):
         graph.result(start(in_thread(graph.nodes[0], fail)))
+
+
+def test_whoever_owes_an_answer_is_missed_once_gone_for_long(graph) -> None:
+    """Absence counts from when it was seen last; an answer ends the wait at once."""
+    node, answer = graph.nodes[0], Future()
+    gone_until = [time.monotonic() + 1.0]
+    waiting = start(until_lost(node, answer, lambda: time.monotonic() > gone_until[0], 1.5))
+    graph.until(lambda: time.monotonic() > gone_until[0] + 1.0)
+    assert not waiting.done()
+    answer.set_result('an answer')
+    graph.until(waiting.done, 0.2)
+    assert waiting.result() is True
+    began = time.monotonic()
+    lost = start(until_lost(node, Future(), lambda: False, 0.6))
+    assert graph.result(lost) is False
+    assert time.monotonic() - began < 3.0

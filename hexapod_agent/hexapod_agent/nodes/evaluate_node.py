@@ -16,7 +16,7 @@ from hexapod_cpg.nodes.cpg_node import CpgNode
 from hexapod_interfaces.action import TrainRun
 from hexapod_interfaces.msg import StepOutcome
 from hexapod_node.actions import ActionClient
-from hexapod_node.coroutines import start, until, until_true
+from hexapod_node.coroutines import start, until, until_lost, until_true
 from hexapod_node.matching import unmatched
 from hexapod_node.node import Node
 from hexapod_node.qos import LOCK_STEP
@@ -68,7 +68,7 @@ class EvaluationNode(Node):
 
         Raises:
             GraphError: no agent is there within the time, or the sim is not heard; the agent
-                refused the goal, or ended it early.
+                refused the goal, ended it early, or was lost.
         """
         listeners = {self.resolve_topic_name(topic): 1 for topic in _TOPICS}
         if not await until_true(self, lambda: not unmatched(sim.publishers, listeners), timeout_s):
@@ -80,7 +80,10 @@ class EvaluationNode(Node):
         handle = await until(self._client.send_goal_async(goal))
         if not handle.accepted:
             raise GraphError('the agent refused the run, expected it to be free')
-        response = await until(handle.get_result_async())
+        played = handle.get_result_async()
+        if not await until_lost(self, played, self._client.server_is_ready, timeout_s):
+            raise GraphError(f'the agent was lost amid the run, not seen for {timeout_s:g} s')
+        response = played.result()
         if response.result.message:
             raise GraphError(response.result.message)
 

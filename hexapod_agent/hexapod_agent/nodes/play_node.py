@@ -9,7 +9,7 @@ from typing import Any
 
 from hexapod_interfaces.action import TrainRun
 from hexapod_node.actions import ActionClient
-from hexapod_node.coroutines import start, until, until_true
+from hexapod_node.coroutines import start, until, until_lost, until_true
 from hexapod_node.diagnostics import Diagnostics
 from hexapod_node.node import Node
 from hexapod_node.parameters import Parameter, declare
@@ -32,7 +32,7 @@ PARAMETERS = (
     Parameter(
         'worker_timeout',
         30.0,
-        'lockstep: longest wait for the worker',
+        'lockstep: longest time without the worker, before the run and amid it',
         unit='s',
         range=(1.0, 86400.0),
     ),
@@ -90,7 +90,7 @@ class PlayNode(Node):
         """Wait for the worker, send the goal and return its result.
 
         Raises:
-            RuntimeError: there is no worker, it is busy, or it ended the run early.
+            RuntimeError: there is no worker, it is busy, it ended the run early, or was lost.
         """
         timeout_s = self.get_parameter('worker_timeout').value
         if not await until_true(self, self._present, timeout_s):
@@ -100,7 +100,12 @@ class PlayNode(Node):
         handle = await until(client.send_goal_async(goal))
         if not handle.accepted:
             raise RuntimeError('the worker is busy, expected it to be free')
-        result = (await until(handle.get_result_async())).result
+        played = handle.get_result_async()
+        if not await until_lost(self, played, client.server_is_ready, timeout_s):
+            raise RuntimeError(
+                f'the worker was lost amid the run, not seen for {timeout_s:g} s; its log says why'
+            )
+        result = played.result().result
         if result.message:
             raise RuntimeError(result.message)
         return result

@@ -22,12 +22,13 @@ from rclpy.service import Service
 from rclpy.task import Future
 
 from hexapod_node.handlers import failed
-from hexapod_node.timers import call_later, call_soon
+from hexapod_node.timers import call_every, call_later, call_soon
 from hexapod_node.upstream import answer_later
 
 STEADY = Clock(clock_type=ClockType.STEADY_TIME)
 """A clock for timers of rclpy that goes on when simulated time stands."""
 _POLL_S = 0.005
+_LOOK_S = 0.5
 Result = TypeVar('Result')
 Handler = Callable[[Any, Any], Coroutine[Future, None, Any]]
 
@@ -91,6 +92,38 @@ async def until_true(node: Node, condition: Callable[[], bool], timeout_s: float
             return False
         await sleep(node, _POLL_S)
     return True
+
+
+async def until_lost(
+    node: Node, answer: Future, present: Callable[[], bool], timeout_s: float
+) -> bool:
+    """Wait for an answer for as long as whoever owes it is there.
+
+    Returns:
+        Whether there is one; False once nobody has been present for so long.
+    """
+    over = Future()
+    seen = time.monotonic()
+
+    def settle(_: Future | None = None) -> None:
+        if not over.done():
+            over.set_result(None)
+
+    def look() -> None:
+        nonlocal seen
+        now = time.monotonic()
+        if present():
+            seen = now
+        elif now - seen > timeout_s:
+            settle()
+
+    answer.add_done_callback(settle)
+    timer = call_every(node, _LOOK_S, look)
+    try:
+        await until(over)
+    finally:
+        timer.cancel()
+    return answer.done()
 
 
 async def in_thread(node: Node, work: Callable[[], Result]) -> Result:
