@@ -5,6 +5,7 @@
 
 import gc
 import os
+import signal
 import socket
 import sys
 import tempfile
@@ -77,6 +78,9 @@ def _reserve_domain() -> tuple[int, socket.socket]:
         return domain, holder
     raise RuntimeError(f'no free ROS domain from 1 to {_LAST_DOMAIN}: end other test runs')
 
+
+# A job that a shell keeps in the background ignores SIGINT, and so would whatever a test starts.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # A busy machine is slow, not wrong.
 settings.register_profile('shared_machine', deadline=None, derandomize=True)

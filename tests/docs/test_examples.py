@@ -10,6 +10,7 @@ from pathlib import Path
 
 import matplotlib
 import pytest
+from hexapod_agent.algorithms import ALGORITHMS
 from hexapod_doe.bags.run_record import read_topic
 from page_commands import ROOT
 
@@ -24,6 +25,8 @@ def run(project: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFi
     def run(name: str, *words: str) -> str:
         monkeypatch.setattr(sys, 'argv', [name, *words])
         monkeypatch.syspath_prepend(EXAMPLES)
+        # The row that an example adds goes with the test.
+        monkeypatch.setitem(ALGORITHMS, 'random_search', ALGORITHMS['ddpg'])
         runpy.run_path(str(EXAMPLES / name), run_name='__main__')
         return capsys.readouterr().out
 

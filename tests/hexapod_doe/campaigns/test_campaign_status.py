@@ -9,12 +9,15 @@ def test_a_campaign_under_way(mixed, capsys):
     shown = capsys.readouterr().out
     assert '4 runs: 1 done, 1 running, 1 interrupted, 1 due' in shown
     assert '8/20 episodes' in shown
-    assert [line.split()[:3] for line in shown.splitlines()[-4:]] == [
+    *_, fourth, third, second, first, blank, label, last = shown.splitlines()
+    assert (blank, label) == ('', 'next:')
+    assert [line.split()[:3] for line in (fourth, third, second, first)] == [
         ['r4', 'AB', 'done'],
         ['r3', 'B', 'running'],
         ['r2', 'A', 'interrupted'],
         ['r1', 'none', 'due'],
     ]
+    assert f'ros2 run hexapod_bringup watch {mixed.directory}' in last
 
 
 def test_a_campaign_that_is_done(folder, capsys):
