@@ -173,6 +173,7 @@ def listener():
 
 
 @pytest.mark.system
+@pytest.mark.alone
 def test_play_with_a_clock(bag, listener, start):
     words = ['--topics', '/a', '--remap', '/a:=/a2', '-r', '2', '--clock']
     process = start('bag', 'play', str(bag), '--start-offset', '0.3', *words)
