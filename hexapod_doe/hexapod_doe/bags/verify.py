@@ -135,7 +135,10 @@ def check_bytes(file: BagFile, digest: str | None) -> None:
     for path in file.files:
         with file.opened(path) as stream:
             records = list(_outer_records(stream))
-        if any(isinstance(record, DataEnd) and record.data_section_crc for record in records):
+        ends = [record for record in records if isinstance(record, DataEnd)]
+        if not ends:
+            raise BagError(f'bag {path}: no end of the data, expected one; it is damaged')
+        if any(end.data_section_crc for end in ends):
             _check_copy(file, records)
         elif digest is not None:
             check_messages(file, digest)
