@@ -9,10 +9,10 @@ be read. The result is a rosbag2 directory that any reader opens, but never a co
 
 import itertools
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import BinaryIO
+from typing import IO, BinaryIO
 
 from mcap.records import Channel, McapRecord, Message, Metadata, Schema
 from mcap.stream_reader import StreamReader
@@ -38,14 +38,13 @@ def salvage(bag: str | Path) -> Path:
         BagError: it is missing or still being written, or holds no whole chunk.
     """
     bag = Path(bag)
-    copy = _Copy(bag.with_name(f'{bag.name}.{SALVAGED}'))
+    copy = BagCopy(bag.with_name(f'{bag.name}.{SALVAGED}'))
     with _exclusive(bag) as stream:
         for record in whole_records(stream):
             copy.take(record)
-    if copy.writer is None:
+    if copy.empty:
         raise BagError(f'bag {bag}: nothing to salvage, expected at least one whole chunk')
-    copy.writer.metadata = copy.metadata | {'status': SALVAGED}
-    return copy.writer.close()
+    return copy.close(copy.metadata | {'status': SALVAGED})
 
 
 def set_aside(bag: str | Path, takeover: bool = False) -> Path | None:
@@ -77,7 +76,7 @@ def set_aside(bag: str | Path, takeover: bool = False) -> Path | None:
     return aside
 
 
-def whole_records(stream: BinaryIO) -> Iterator[McapRecord]:
+def whole_records(stream: IO[bytes]) -> Iterator[McapRecord]:
     """Yield the records of an MCAP file up to the first that is cut or fails its checksum."""
     records = StreamReader(stream, validate_crcs=True).records
     while True:
@@ -88,17 +87,31 @@ def whole_records(stream: BinaryIO) -> Iterator[McapRecord]:
         yield record
 
 
-class _Copy:
-    """Puts recovered records into a new bag, which is opened when the first message comes."""
+class BagCopy:
+    """Puts the records of a bag into a new one, which is opened when the first message comes.
+
+    Attributes:
+        metadata: what the records said of their run so far.
+    """
 
     def __init__(self, target: Path) -> None:
-        self.target = target
         self.metadata: dict[str, str] = {}
-        self.writer: BagWriter | None = None
+        self._target = target
+        self._writer: BagWriter | None = None
         self._schemas: dict[int, Schema] = {}
         self._channels: dict[int, Channel] = {}
 
+    @property
+    def empty(self) -> bool:
+        """Whether no message has come."""
+        return self._writer is None
+
     def take(self, record: McapRecord) -> None:
+        """Take over a record.
+
+        Raises:
+            BagError: there is something at the target already, or the disk refuses.
+        """
         match record:
             case Metadata(name=name) if name == RUN_RECORD:
                 self.metadata.update(record.metadata)
@@ -109,13 +122,26 @@ class _Copy:
             case Message():
                 self._write(record)
 
+    def close(self, metadata: Mapping[str, str]) -> Path:
+        """Finish the new bag, with what it is to say of its run; return its directory.
+
+        Raises:
+            BagError: no message has come, or the disk refuses.
+        """
+        if self._writer is None:
+            raise BagError(f'bag {self._target}: no message, expected some to write')
+        for channel in self._channels.values():  # also those on which nothing was said
+            self._writer.add_topic(topic_of(channel, self._schemas[channel.schema_id]))
+        self._writer.metadata = dict(metadata)
+        return self._writer.close()
+
     def _write(self, message: Message) -> None:
-        if self.writer is None:
-            self.writer = BagWriter(self.target, self.metadata)
+        if self._writer is None:
+            self._writer = BagWriter(self._target, self.metadata)
         channel = self._channels[message.channel_id]
-        if channel.topic not in self.writer.extent.counts:
-            self.writer.add_topic(topic_of(channel, self._schemas[channel.schema_id]))
-        self.writer.write(channel.topic, message.data, message.log_time, message.publish_time)
+        if channel.topic not in self._writer.extent.counts:
+            self._writer.add_topic(topic_of(channel, self._schemas[channel.schema_id]))
+        self._writer.write(channel.topic, message.data, message.log_time, message.publish_time)
 
 
 def topic_of(channel: Channel, schema: Schema) -> Topic:
