@@ -11,6 +11,7 @@ from hexapod_node.qos import LATCHED
 from hexapod_sim.robot import JOINTS
 from nav_msgs.msg import Odometry
 from rcl_interfaces.msg import Log
+from rclpy.parameter import Parameter
 from robot_urdf import robot_description
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
@@ -25,6 +26,18 @@ def test_a_late_listener_gets_the_description(graph) -> None:
     graph.nodes[0].create_subscription(String, 'robot_description', heard.append, LATCHED)
     graph.until(lambda: heard)
     assert heard[0].data == robot_description()
+
+
+def test_the_description_follows_its_parameters(graph) -> None:
+    node = graph.add(DescriptionNode())
+    heard: list[String] = []
+    graph.nodes[0].create_subscription(String, 'robot_description', heard.append, LATCHED)
+    (result,) = node.set_parameters([Parameter('robot.payload', value=1.2)])
+    assert result.successful
+    graph.until(lambda: heard and 'payload' in heard[-1].data)
+    (result,) = node.set_parameters([Parameter('robot.dead_legs', value='tail')])
+    assert not result.successful
+    assert 'robot.dead_legs: expected' in result.reason
 
 
 def test_base_frame_is_the_pose_of_odometry() -> None:

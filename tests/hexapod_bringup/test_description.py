@@ -10,7 +10,9 @@ from xml.etree import ElementTree
 import mujoco
 import numpy as np
 import pytest
+from hexapod_bringup.description import description_of
 from hexapod_sim.simulation import Simulation
+from hexapod_sim.variations.table import RobotConfig
 from robot_urdf import capsule_inertia, robot_description
 
 from hexapod_sim import robot
@@ -183,3 +185,46 @@ def test_devices_are_where_the_model_has_them(urdf, mjcf) -> None:
     mujoco.mju_quat2Mat(axes, mjcf.site(robot.HEIGHT_FRAME).quat)
     looks = [math.cos(pitch), 0, -math.sin(pitch)]
     np.testing.assert_allclose(axes.reshape(3, 3)[:, 2], looks, atol=1e-12)
+
+
+def test_as_built_the_description_is_the_shipped_one() -> None:
+    assert description_of(robot_description(), RobotConfig.of_article()) == robot_description()
+    strong = RobotConfig.of_article(motor_strength=0.7)
+    assert ElementTree.canonicalize(
+        description_of(robot_description(), strong), strip_text=True
+    ) == ElementTree.canonicalize(robot_description(), strip_text=True)
+
+
+def test_a_payload_has_its_place_mass_and_inertia(imported: mujoco.MjModel) -> None:
+    config = RobotConfig.of_article(payload=1.2, payload_x=0.05, payload_edge=0.1)
+    text = description_of(robot_description(), config)
+    assert mujoco.MjModel.from_xml_string(text).njnt == imported.njnt
+    root = ElementTree.fromstring(text)
+    link, mount = root.find("link[@name='payload']"), root.find("joint[@name='payload_mount']")
+    assert floats(link, 'inertial/mass', 'value') == [1.2]
+    assert floats(link, 'inertial/inertia', 'ixx') == pytest.approx([1.2 * 0.1**2 / 6])
+    assert floats(link, 'visual/geometry/box', 'size') == [0.1, 0.1, 0.1]
+    assert floats(mount, 'origin', 'xyz')[0] == 0.05
+    assert mount.find('parent').get('link') == robot.BASE_FRAME
+
+
+def test_dead_legs_are_red_and_missing_ones_leave_their_frames(imported: mujoco.MjModel) -> None:
+    config = RobotConfig.of_article(dead_legs='lf', missing_legs='rm')
+    root = ElementTree.fromstring(description_of(robot_description(), config))
+    links = {link.get('name', ''): link for link in root.iter('link')}
+    colours = {
+        name: {colour.get('rgba') for colour in link.findall('visual/material/color')}
+        for name, link in links.items()
+    }
+    assert {name for name, found in colours.items() if found} == {
+        'lf_coxa', 'lf_femur', 'lf_tibia',
+    }  # fmt: skip
+    assert colours['lf_coxa'] == {'0.75 0.16 0.14 1.0'}
+    empty = {name for name, link in links.items() if len(link) == 0}
+    assert {'rm_coxa', 'rm_femur', 'rm_tibia'} <= empty
+    assert 'lm_coxa' not in empty
+    joints = [joint.get('name') for joint in root.iter('joint')]
+    assert joints == [
+        joint.get('name')
+        for joint in ElementTree.fromstring(robot_description().split('?>', 1)[1]).iter('joint')
+    ]

@@ -10,7 +10,7 @@ import mujoco
 from hexapod_sim.variations.legs import LegNames, LegVariation
 from hexapod_sim.variations.variation import geoms_of, joints_of, paint, weaken
 
-_COLOUR = (0.75, 0.16, 0.14, 1.0)
+COLOUR = (0.75, 0.16, 0.14, 1.0)
 
 
 @dataclass(frozen=True)
@@ -33,4 +33,4 @@ class DeadLegs(LegVariation):
         weaken(spec, joints_of(self.legs), 0.0)
         for leg in self.legs:
             for geom in geoms_of(spec, leg):
-                paint(geom, _COLOUR)
+                paint(geom, COLOUR)

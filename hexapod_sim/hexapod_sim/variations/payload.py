@@ -13,7 +13,7 @@ from hexapod_sim.robot import BASE_FRAME
 from hexapod_sim.variations.variation import Variation, paint
 
 _Place = Annotated[float, Interval(ge=-0.5, le=0.5)]
-_COLOUR = (0.20, 0.42, 0.75, 1.0)
+COLOUR = (0.20, 0.42, 0.75, 1.0)
 
 
 @dataclass(frozen=True)
@@ -64,4 +64,4 @@ class Payload(Variation):
         """Give it its mass and a colour."""
         geom = spec.geom('payload')
         geom.mass = self._mass
-        paint(geom, _COLOUR)
+        paint(geom, COLOUR)

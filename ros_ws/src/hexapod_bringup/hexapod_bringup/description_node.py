@@ -12,14 +12,17 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from geometry_msgs.msg import TransformStamped
 from hexapod_node.diagnostics import Diagnostics, Health
 from hexapod_node.node import Node
+from hexapod_node.parameters import ConfigParameters
 from hexapod_node.qos import DRIVER, LATCHED
 from hexapod_node.spin import run
 from hexapod_sim.robot import BASE_FRAME, ODOM_FRAME
+from hexapod_sim.variations.table import RobotConfig
 from nav_msgs.msg import Odometry
 from scipy.spatial.transform import Rotation
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
+from hexapod_bringup.description import description_of
 from hexapod_bringup.frames import Transform, device_frames, foot_frames, link_frames
 
 try:
@@ -29,13 +32,19 @@ except ImportError:
 
 
 class DescriptionNode(Node):
-    """Shows what the robot is, and where its parts are as `joint_states` and `odom` say."""
+    """Shows what the robot is, and where its parts are as `joint_states` and `odom` say.
+
+    Its parameters `robot.…` are those of the node `sim`; the description follows them.
+    """
 
     def __init__(self) -> None:
         super().__init__('description')
         shipped = get_package_share_path('hexapod_bringup') / 'urdf' / 'hexapod.urdf'
+        self._shipped = shipped.read_text(encoding='utf-8')
+        self._robot = ConfigParameters(self, RobotConfig.of_article(), 'robot')
         self._description = self.create_publisher(String, 'robot_description', LATCHED)
-        self._description.publish(String(data=shipped.read_text(encoding='utf-8')))
+        self._describe()
+        self.add_post_set_parameters_callback(lambda _: self._describe())
         self._links: list[Transform] = []
         self._sent = 0
         if TFMessage is None:
@@ -43,6 +52,9 @@ class DescriptionNode(Node):
         else:
             self._start_frames()
         Diagnostics(self, self._health)
+
+    def _describe(self) -> None:
+        self._description.publish(String(data=description_of(self._shipped, self._robot.get())))
 
     def _start_frames(self) -> None:
         """Publish the frames that stay, and those that move whenever a sensor tells."""
