@@ -91,9 +91,12 @@ class RandomSearch(Learner):
 def main(words: Sequence[str] | None = None) -> None:
     """Train, by what the command line says."""
     names = ('random_search:RandomSearchConfig', 'random_search:RandomSearch')
-    ALGORITHMS['random_search'] = Algorithm(*names)
     given = sys.argv[1:] if words is None else words
-    train([*given, '--set', 'learner.algorithm=random_search'])
+    ALGORITHMS['random_search'] = Algorithm(*names)
+    try:
+        train([*given, '--set', 'learner.algorithm=random_search'])
+    finally:  # whoever called may have other uses for the table
+        del ALGORITHMS['random_search']
 
 
 if __name__ == '__main__':

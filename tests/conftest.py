@@ -107,15 +107,6 @@ def _no_node_outlives_its_test(request: pytest.FixtureRequest) -> Iterator[None]
         gc.collect()
 
 
-@pytest.fixture(autouse=True)
-def _no_algorithm_outlives_its_test() -> Iterator[None]:
-    """Drop the rows that an example or a tutorial adds to the table of algorithms."""
-    yield
-    module = sys.modules.get('hexapod_agent.algorithms')
-    for name in {*getattr(module, 'ALGORITHMS', ())} - {'ddpg', 'td3', 'sac', 'ppo'}:
-        del module.ALGORITHMS[name]  # type: ignore[union-attr]
-
-
 @pytest.fixture(scope='module')
 def own_domain() -> Iterator[int]:
     """Give a module's processes a domain that nodes of this test process were never in.
