@@ -5,14 +5,20 @@
 
 from __future__ import annotations
 
+import io
 import os
 import signal
 import subprocess
 import time
 from collections.abc import Callable, Iterator
+from contextlib import chdir, redirect_stderr, redirect_stdout
 from pathlib import Path
+from pkgutil import resolve_name
 
 import pytest
+import rclpy
+from rclpy.node import Node
+from understood import console_main
 
 
 class Shell:
@@ -31,6 +37,22 @@ class Shell:
             timeout=timeout_s,
             cwd=self.directory,
             check=False,
+        )
+
+    def call(self, line: str) -> subprocess.CompletedProcess[str]:
+        """Carry out a line of `ros2 run` in this process, which has loaded the libraries.
+
+        For what makes ready or looks back: what a test is about has a process of its own.
+        """
+        _, _, package, executable, *words = line.split()
+        printed, complained = io.StringIO(), io.StringIO()
+        with chdir(self.directory), redirect_stdout(printed), redirect_stderr(complained):
+            try:
+                status = resolve_name(console_main(package, executable))(words)
+            except SystemExit as ended:
+                status = ended.code
+        return subprocess.CompletedProcess(
+            line, int(status or 0), printed.getvalue(), complained.getvalue()
         )
 
     def start(self, line: str) -> subprocess.Popen[str]:
@@ -82,3 +104,14 @@ def shell(tmp_path: Path) -> Iterator[Shell]:
 @pytest.fixture(scope='module', autouse=True)
 def _isolated(own_domain: int) -> None:
     """Keep the processes of these tests among themselves."""
+
+
+@pytest.fixture
+def observer(own_domain: int) -> Iterator[Node]:
+    """Yield a node that sees the others, in less time than `ros2 node list` takes to start."""
+    context = rclpy.Context()
+    rclpy.init(context=context, domain_id=own_domain)
+    node = Node('observer', context=context)
+    yield node
+    node.destroy_node()
+    context.shutdown()

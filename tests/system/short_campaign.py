@@ -50,7 +50,7 @@ class ShortCampaign:
         self.runs = folder / 'runs'
         self.config: Path = shell.directory / 'short.yaml'
         self.config.write_text(SHORT)
-        made = shell.run(f'ros2 run hexapod_doe plan {design} --seed 3 --out {self.plan}')
+        made = shell.call(f'ros2 run hexapod_doe plan {design} --seed 3 --out {self.plan}')
         assert made.returncode == 0, made.stderr
         self.rows = read_plan(self.plan).rows
 

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 from pathlib import Path
 
@@ -15,6 +16,8 @@ from hexapod_doe.designs.plan_file import read_plan
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
+
+from .conftest import Shell
 
 pytestmark = pytest.mark.system
 ALWAYS = {'joint_states', 'cpg/state', 'line_offset', 'step_outcome'}
@@ -35,11 +38,10 @@ MANAGER = (
 )
 
 
-@pytest.fixture
-def plan(shell) -> Path:
+def write_plan(shell: Shell) -> Path:
     """Write a plan of four short runs and the configuration that makes them short."""
     line = 'ros2 run hexapod_doe plan --generators C=AB --factors 3 --seed 3 --out plan.csv'
-    assert shell.run(line).returncode == 0
+    assert shell.call(line).returncode == 0
     (shell.directory / 'short.yaml').write_text(
         f'task: {{time_limit_steps: {STEPS}}}\nddpg: {{batch_size: 16, update_every: 8}}\n'
         'training: {evaluation: 2}\n'
@@ -47,22 +49,28 @@ def plan(shell) -> Path:
     return shell.directory / 'plan.csv'
 
 
-def manager(shell, workers: int) -> str:
+def manager(shell: Shell, workers: int) -> str:
     return MANAGER.format(config=shell.directory / 'short.yaml', workers=workers)
 
 
-@pytest.fixture
-def bags(shell, plan: Path) -> list[Path]:
-    """Run the campaign on two workers."""
+@pytest.fixture(scope='module')
+def finished(tmp_path_factory: pytest.TempPathFactory, own_domain: int) -> Path:
+    """Run the campaign on two workers, and return its plan; nothing is to change there."""
+    shell = Shell(tmp_path_factory.mktemp('finished'))
+    plan = write_plan(shell)
     ended = shell.run(manager(shell, 2), timeout_s=120.0)
     assert ended.returncode == 0, ended.stdout + ended.stderr
     assert '4 of 4 runs' in ended.stdout
+    return plan
+
+
+def bags_of(plan: Path) -> list[Path]:
     return [plan.parent / 'runs' / run_id for run_id in read_plan(plan).rows['run_id']]
 
 
-def test_each_bag_is_whole_and_readable_by_others(shell, plan: Path, bags: list[Path]) -> None:
-    rows = read_plan(plan).rows.set_index('run_id')
-    for bag in bags:
+def test_each_bag_is_whole_and_readable_by_others(finished: Path) -> None:
+    rows = read_plan(finished).rows.set_index('run_id')
+    for bag in bags_of(finished):
         record = read_run(bag)
         row = rows.loc[bag.name]
         assert record.metadata['observations'] == row['observations']
@@ -107,19 +115,23 @@ def assert_read_by_mcap(bag: Path) -> None:
     assert 'geometry_msgs/msg/WrenchStamped' in kinds
 
 
-def test_what_is_done_is_not_done_again(shell, plan: Path, bags: list[Path]) -> None:
+def test_what_is_done_is_not_done_again(shell, finished: Path) -> None:
+    shutil.copytree(finished.parent, shell.directory, dirs_exist_ok=True)
+    plan = shell.directory / finished.name
+    bags = bags_of(plan)
     before = {bag: (bag / 'metadata.yaml').stat().st_mtime_ns for bag in bags}
     (bags[2] / 'metadata.yaml').unlink()
-    assert shell.run(f'ros2 run hexapod_doe campaign_status {plan.parent}').returncode == 1
+    assert shell.call(f'ros2 run hexapod_doe campaign_status {plan.parent}').returncode == 1
     ended = shell.run(manager(shell, 1), timeout_s=120.0)
     assert ended.returncode == 0, ended.stdout + ended.stderr
     after = {bag: (bag / 'metadata.yaml').stat().st_mtime_ns for bag in bags}
     changed = [bag for bag in bags if before[bag] != after[bag]]
     assert changed == [bags[2]]
-    assert shell.run(f'ros2 run hexapod_doe campaign_status {plan.parent}').returncode == 0
+    assert shell.call(f'ros2 run hexapod_doe campaign_status {plan.parent}').returncode == 0
 
 
-def test_a_worker_that_never_appears_is_one_clear_error(shell, plan: Path) -> None:
+def test_a_worker_that_never_appears_is_one_clear_error(shell) -> None:
+    write_plan(shell)
     # Somebody else who waits for a worker is not one, nor is a worker that is there to play.
     waiting = shell.directory / 'waiting.py'
     waiting.write_text(WAITING_CLIENT)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 
 import pytest
+from rclpy.node import Node
 
 pytestmark = [pytest.mark.system, pytest.mark.alone]
 DRIVER = (
@@ -28,11 +29,11 @@ def checked(shell, *options: str) -> tuple[int, list[tuple[str, str]], str]:
     return ended.returncode, faults, ended.stdout
 
 
-def test_a_driver_is_checked_before_the_robot_moves(shell) -> None:
+def test_a_driver_is_checked_before_the_robot_moves(shell, observer: Node) -> None:
     for node in ('hexapod_sim sim_node', 'hexapod_cpg cpg_node'):
         shell.start(f'ros2 run {node} --ros-args -r __ns:=/robot -p sync:=realtime')
     shell.start(DRIVER)
-    shell.until(lambda: '/robot/bno055/data' in shell.run('ros2 topic list').stdout)
+    shell.until(lambda: '/robot/bno055/data' in dict(observer.get_topic_names_and_types()))
 
     status, faults, printed = checked(shell)
     assert (status, faults) == (1, [('wrong_frame', 'header.frame_id')]), printed

@@ -83,7 +83,7 @@ def trained(shell, factors: str, design: str, rows: int, episodes: int) -> tuple
     (here / 'base.yaml').write_text(BASE.replace('EPISODES', str(episodes)))
     line = f'ros2 run hexapod_doe plan --factors factors.yaml {design} --config base.yaml --seed 3'
     for folder in ('graph', 'fleet'):
-        made = shell.run(f'{line} --out {folder}/plan.csv')
+        made = shell.call(f'{line} --out {folder}/plan.csv')
         assert made.returncode == 0, made.stderr
     lines = (
         MANAGER,

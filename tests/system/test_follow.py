@@ -38,7 +38,7 @@ def test_launch_records_and_reports(ready, composed: str) -> None:
     track = read_track(bag)
     assert track.time.size == 101
     assert track.line[[0, 39, 40, 79, 80]] == pytest.approx([-0.3, -0.3, 0.3, 0.3, -0.3])
-    report = ready.run('ros2 run hexapod_doe follow_report bag --out follow.svg')
+    report = ready.call('ros2 run hexapod_doe follow_report bag --out follow.svg')
     assert report.returncode == 0, report.stderr
     assert '+0.60' in report.stdout
     assert (ready.directory / 'follow.svg').is_file()

@@ -13,6 +13,7 @@ from xml.etree import ElementTree
 
 import pytest
 from ament_index_python.packages import get_package_share_directory
+from rclpy.node import Node
 
 pytestmark = pytest.mark.system
 LAUNCHES = sorted(Path(get_package_share_directory('hexapod_bringup'), 'launch').iterdir())
@@ -32,11 +33,11 @@ def gone(pid: int) -> bool:
         return True
 
 
-def test_nodes_end_when_their_launch_is_killed(shell) -> None:
+def test_nodes_end_when_their_launch_is_killed(shell, observer: Node) -> None:
     launch = shell.start('ros2 launch hexapod_bringup description.launch.xml')
     shell.until(lambda: 'process started' in shell.output())
     (node,) = children(launch.pid)
-    shell.until(lambda: '/description' in shell.run('ros2 node list').stdout)
+    shell.until(lambda: 'description' in observer.get_node_names())
     launch.send_signal(signal.SIGKILL)
     shell.until(lambda: gone(node), timeout_s=10.0)
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import signal
 
 import pytest
+from rclpy.node import Node
 
 pytestmark = pytest.mark.system
 
@@ -21,15 +22,17 @@ NODES = {
 
 @pytest.mark.parametrize('how', [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize('name', NODES)
-def test_a_signal_ends_a_node_with_status_0(shell, name: str, how: signal.Signals) -> None:
+def test_a_signal_ends_a_node_with_status_0(
+    shell, observer: Node, name: str, how: signal.Signals
+) -> None:
     process = shell.start(f'ros2 run {NODES[name]} --ros-args -r __ns:=/robot')
-    shell.until(lambda: f'/robot/{name}' in shell.run('ros2 node list').stdout)
+    shell.until(lambda: name in observer.get_node_names())
     process.send_signal(how)
     assert process.wait(10.0) == 0, shell.output()
     assert 'Traceback' not in shell.output()
 
 
-def test_parameters_files_and_remappings_are_taken(shell) -> None:
+def test_parameters_files_and_remappings_are_taken(shell, observer: Node) -> None:
     (shell.directory / 'p.yaml').write_text(
         '/**/cpg:\n  ros__parameters:\n    cpg.gait: wave\n    cpg.alpha: 30.0\n'
     )
@@ -37,7 +40,7 @@ def test_parameters_files_and_remappings_are_taken(shell) -> None:
         'ros2 run hexapod_cpg cpg_node --ros-args -r __ns:=/robot --params-file p.yaml '
         '-p cpg.alpha:=40.0 -r joint_trajectory:=/legs/joint_trajectory'
     )
-    shell.until(lambda: '/legs/joint_trajectory' in shell.run('ros2 topic list').stdout)
+    shell.until(lambda: '/legs/joint_trajectory' in dict(observer.get_topic_names_and_types()))
     assert 'wave' in shell.run('ros2 param get /robot/cpg cpg.gait').stdout
     assert '40.0' in shell.run('ros2 param get /robot/cpg cpg.alpha').stdout
 
@@ -61,12 +64,12 @@ def test_a_bad_parameter_is_one_clear_line(shell, line: str, complaint: str) -> 
 
 
 @pytest.mark.parametrize('composed', ['true', 'false'])
-def test_a_worker_launches_in_one_process_or_in_four(shell, composed: str) -> None:
+def test_a_worker_launches_in_one_process_or_in_four(shell, observer: Node, composed: str) -> None:
     launch = shell.start(
         f'ros2 launch hexapod_bringup worker.launch.xml namespace:=w composed:={composed}'
     )
-    expected = {f'/w/{name}' for name in NODES}
-    shell.until(lambda: expected <= set(shell.run('ros2 node list').stdout.split()))
+    expected = {(name, '/w') for name in NODES}
+    shell.until(lambda: expected <= set(observer.get_node_names_and_namespaces()))
     assert '/w/train_run' in shell.run('ros2 node info /w/agent').stdout
     launch.send_signal(signal.SIGINT)
     assert launch.wait(15.0) == 0, shell.output()

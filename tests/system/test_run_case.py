@@ -117,7 +117,7 @@ def plan_has_begun(directory: Path) -> bool:
     ],
 )
 def test_a_job_without_a_row_is_one_clear_line(shell, plan: Path, change, complaint) -> None:
-    ended = shell.run(f'ros2 run hexapod_doe run_case --plan plan.csv {change}')
+    ended = shell.call(f'ros2 run hexapod_doe run_case --plan plan.csv {change}')
     assert ended.returncode == 2
     assert complaint in ended.stderr
     assert 'Traceback' not in ended.stderr
@@ -127,6 +127,6 @@ def test_a_folder_of_another_plan_is_refused(shell, plan: Path) -> None:
     out = shell.directory / 'jobs'
     out.mkdir()
     (out / 'plan.csv').write_text(plan.read_text().replace('r1', 'r9'))
-    ended = shell.run(case(1))
+    ended = shell.call(case(1))
     assert ended.returncode == 2
     assert 'another plan' in ended.stderr

@@ -91,7 +91,7 @@ def hosts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Hosts]:
 def plan(shell) -> Path:
     """Write a plan of four short runs."""
     line = 'ros2 run hexapod_doe plan --generators C=AB --factors 3 --seed 3 --out plan.csv'
-    assert shell.run(line).returncode == 0
+    assert shell.call(line).returncode == 0
     (shell.directory / 'short.yaml').write_text(
         'task: {time_limit_steps: 60}\nddpg: {batch_size: 16, update_every: 6}\n'
         'training: {evaluation: 2}\n'

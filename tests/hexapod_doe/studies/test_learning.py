@@ -3,12 +3,17 @@
 
 """The learning study: its table, its figure, and that a finished study is not repeated."""
 
+import io
+import time
+from contextlib import redirect_stdout
+from pkgutil import resolve_name
+
 import pandas as pd
 import pytest
 from hexapod_doe.studies import learning
 
 ARGUMENTS = ['--sets', 'C', '--seeds', '1', '--first-seed', '3', '--episodes', '2']
-ARGUMENTS += ['--starts', '2']
+ARGUMENTS += ['--starts', '2', '--jobs', '1']
 CONFIG = """
 task: {time_limit_steps: 8}
 ddpg: {update_every: 4}
@@ -16,22 +21,36 @@ actor: {hidden: [8, 8]}
 critic: {hidden: [8, 8]}
 training: {evaluation: 2, checkpoint_every: 1}
 """
+as_ever = learning._python
 
 
 @pytest.fixture(autouse=True)
 def short_search(monkeypatch, tmp_path):
-    """Stand in for the searches of walks without feedback, which take minutes."""
-    run = learning._python
+    """Stand in for the searches of walks without feedback, which take minutes.
+
+    Programs run in this process, which has loaded the libraries; a test may have those that train
+    run as the study does.
+    """
 
     def python(module: str, *arguments: str) -> float:
         found = ('constant', 'open-loop')
-        return run(module, *('zero' if argument in found else argument for argument in arguments))
+        before = time.process_time()
+        program = resolve_name(f'{module}:main')
+        with redirect_stdout(io.StringIO()):
+            program(['zero' if argument in found else argument for argument in arguments])
+        return time.process_time() - before
 
     monkeypatch.setattr(learning, '_python', python)
     (tmp_path / 'short.yaml').write_text(CONFIG)
 
 
 def test_study_leaves_its_table_and_is_not_repeated(tmp_path, capsys, monkeypatch):
+    here = learning._python
+
+    def python(module: str, *arguments: str) -> float:
+        return (as_ever if module == 'hexapod_agent.train' else here)(module, *arguments)
+
+    monkeypatch.setattr(learning, '_python', python)
     out = tmp_path / 'study'
     arguments = ['--out', str(out), '--config', str(tmp_path / 'short.yaml'), *ARGUMENTS]
     learning.main(arguments)
