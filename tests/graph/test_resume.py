@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+import shutil
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 
@@ -122,11 +124,24 @@ def train(graph, goal: TrainRun.Goal) -> str:
     return graph.train(goal).result.message
 
 
+@pytest.fixture(scope='module')
+def whole(tmp_path_factory) -> Path:
+    """Return the folder where the undisturbed bag of each learner is kept, once there is one."""
+    return tmp_path_factory.mktemp('whole')
+
+
 @pytest.fixture
-def undisturbed(graph, worker: Worker, goal, tmp_path: Path) -> pd.DataFrame:
-    assert train(graph, goal('whole')) == ''
-    worker.begun.clear()
-    return results(tmp_path / 'whole')
+def undisturbed(
+    graph, worker: Worker, goal, learner: str, whole: Path, tmp_path: Path
+) -> pd.DataFrame:
+    """Return the results of a run without a cut, whose bag is `whole`."""
+    kept = whole / str(zlib.crc32(learner.encode()))
+    if not kept.exists():
+        assert train(graph, goal('whole')) == ''
+        worker.begun.clear()
+        shutil.copytree(tmp_path / 'whole', kept)
+    shutil.copytree(kept, tmp_path / 'whole', dirs_exist_ok=True)
+    return results(kept)
 
 
 @pytest.mark.parametrize('learner', [DDPG, SAC, PPO], ids=['ddpg', 'sac', 'ppo'])

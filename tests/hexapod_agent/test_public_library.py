@@ -13,15 +13,15 @@ def test_stable_baselines3_trains_on_the_environment() -> None:
     model = DDPG(
         'MlpPolicy',
         env,
-        learning_starts=128,
-        batch_size=128,
+        learning_starts=64,
+        batch_size=64,
         policy_kwargs={'net_arch': [64, 64]},
         seed=1,
         device='cpu',
     )
     before = [parameter.detach().clone() for parameter in model.actor.parameters()]
-    model.learn(1000)
-    assert model.num_timesteps == 1000
+    model.learn(300)
+    assert model.num_timesteps == 300
     after = list(model.actor.parameters())
     assert any(not np.array_equal(a, b.detach()) for a, b in zip(before, after, strict=True))
     observation, _ = env.reset(seed=1)

@@ -68,7 +68,7 @@ def arguments(hyperparameters, plan_file):
 def digests(tmp_path_factory, hyperparameters, plan_file) -> dict[str, str]:
     """Digest of each bag of the undisturbed campaign, by run."""
     out = tmp_path_factory.mktemp('whole')
-    options = ['--episodes', str(EPISODES), '--config', str(hyperparameters)]
+    options = ['--episodes', str(EPISODES), '--config', str(hyperparameters), '--processes', '1']
     assert run_fleet.main(['--plan', str(plan_file), '--out', str(out), *options]) == 0
     return campaign_digests(out)
 
@@ -275,7 +275,9 @@ def test_process_that_breaks_down_is_named_and_its_row_stays_due(arguments, dige
     assert campaign_digests(tmp_path) == digests
 
 
-@pytest.mark.parametrize('how', [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    'how', [signal.SIGTERM, pytest.param(signal.SIGINT, marks=pytest.mark.slow)]
+)
 def test_interrupted_processes_end_with_their_parent(arguments, tmp_path, how):
     given = arguments(tmp_path, processes=2, threads=1, episodes=10_000)
     parent = subprocess.Popen([sys.executable, '-m', 'hexapod_doe.run_fleet', *given])

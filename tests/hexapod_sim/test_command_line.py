@@ -123,11 +123,10 @@ def test_no_letter_is_too_strange_for_a_terminal(
     assert 'A,B,' in shown
 
 
-@pytest.mark.parametrize('encoding', ['latin-1', 'ascii'])
-def test_help_on_such_a_terminal(encoding: str) -> None:
+def test_help_on_such_a_terminal() -> None:
     done = subprocess.run(
         [sys.executable, '-m', 'hexapod_doe.analyze', '--help'],
-        env={**os.environ, 'PYTHONIOENCODING': encoding},
+        env={**os.environ, 'PYTHONIOENCODING': 'ascii'},
         capture_output=True,
         check=False,
     )

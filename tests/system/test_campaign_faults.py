@@ -51,7 +51,7 @@ def test_a_second_manager_is_one_clear_error(shell, campaign: ShortCampaign, tol
     assert first.poll() is None
     first.kill()
     first.wait()
-    assert campaign.start(workers=2).wait(100.0) == 0, shell.output()
+    assert campaign.start(workers=1).wait(100.0) == 0, shell.output()
 
 
 def test_a_local_worker_that_hangs_is_replaced(shell, campaign: ShortCampaign) -> None:

@@ -89,7 +89,7 @@ def test_a_preempted_job_is_not_done_and_goes_on(shell, plan: Path) -> None:
     directory = shell.directory / 'jobs'
     shell.until(lambda: plan_has_begun(directory))
     job.send_signal(signal.SIGSTOP)
-    rival = shell.run(long)
+    rival = shell.call(long)
     assert rival.returncode == 1
     assert 'is at it' in rival.stderr
     job.send_signal(signal.SIGTERM)

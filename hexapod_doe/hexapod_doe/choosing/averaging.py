@@ -8,6 +8,7 @@ included as alternatives, by exp(−BIC/2) times a prior that favours interactio
 parents (Chipman, Hamada and Wu, Technometrics 39, 1997).
 """
 
+import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
@@ -36,6 +37,7 @@ P_INTERACTION = (0.01, 0.10, 0.25)
 """Prior probability of an interaction with none, one or both parents active."""
 SWEEPS, BURN_IN = 400, 50
 _SHOWN = 10
+_LARGEST_EXPONENT = 700.0
 _DEPENDENT = 1e-9
 """Share of the longest diagonal of R below which a column depends on those before it."""
 
@@ -238,7 +240,7 @@ def _gibbs_sweep(space: ModelSpace, active: np.ndarray, rng: np.random.Generator
 def _chance(with_: float, without: float) -> float:
     if with_ == -np.inf:
         return 0.0
-    return float(1 / (1 + np.exp(np.clip(without - with_, -700, 700))))
+    return 1 / (1 + math.exp(min(without - with_, _LARGEST_EXPONENT)))
 
 
 def _draw(
