@@ -13,8 +13,10 @@ from hexapod_agent import film
 SMALL = ['--width', '48', '--height', '32', '--seconds', '0.4']
 
 
-def test_film_and_strip_of_a_checkpoint(make_trainer, tmp_path):
-    checkpoint.save_agent(tmp_path / 'a.pt', make_trainer())
+@pytest.mark.parametrize('algorithm', ['ddpg', 'td3', 'sac', 'ppo'])
+def test_film_and_strip_of_an_agent(make_trainer, small_config, tmp_path, algorithm):
+    config = small_config.with_value('learner.algorithm', algorithm, 'a test')
+    checkpoint.save_agent(tmp_path / 'a.pt', make_trainer(config=config))
     out, picture = tmp_path / 'a.gif', tmp_path / 'a.png'
     arguments = [str(tmp_path / 'a.pt'), '--out', str(out), '--strip', str(picture)]
     film.main([*arguments, '--frames', '3', *SMALL])
