@@ -4,6 +4,7 @@
 """Numbers that pages quote are those of the files, tables and constants that they are from."""
 
 import re
+import statistics
 
 import pytest
 from hexapod_agent.specification.observation import ObservationSpec
@@ -45,6 +46,25 @@ def test_the_readme_says_what_the_reference_trainings_earned(reference) -> None:
     assert sum(row[2] for row in seen) == 0
     assert [row[0] < -40 for row in blind].count(True) == 1
     assert 'one seed of five is in ruins' in text
+
+
+def test_the_readme_says_what_the_short_training_costs_and_gives() -> None:
+    learning, readme = page('docs/learning.md'), page('README.md')
+    found = re.findall(r'^\| `ABCDE` \| \d \| (\d+) \|', learning, re.MULTILINE)
+    returns = [float(value) for value in found]
+    proof = {
+        name: cells.split(' | ')
+        for name, cells in re.findall(
+            r'^\| (\w+)\.yaml \| `ABCDE` \| (\d+ \| .*) \|$', learning, re.MULTILINE
+        )[:2]
+    }
+    assert len(returns) == 5
+    mean, deviation = statistics.mean(returns), statistics.stdev(returns)
+    assert f'| {mean:.0f}, {deviation:.0f} (5 seeds) | {proof["article"][-1]} |' in readme
+    count, mean_return, spread, _, failed, _, seconds = proof['swift']
+    assert failed == '0'
+    said = f'| {mean_return}, {spread} ({count} seeds, none failed) | {seconds} |'
+    assert said in readme
 
 
 @pytest.mark.parametrize(
