@@ -220,7 +220,6 @@ def ros_args(tmp_path, request) -> list[str]:
     return ['--ros-args', *(word for value in given for word in ('-p', value))]
 
 
-@pytest.mark.alone
 @COUNTS
 def test_real_time(graph, monkeypatch, count: int) -> None:
     # As if the publisher that is heard sent them: those of a further one are not even looked at.

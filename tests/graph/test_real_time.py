@@ -27,7 +27,7 @@ from trajectory_msgs.msg import JointTrajectory
 
 from hexapod_sim import robot
 
-pytestmark = [pytest.mark.graph, pytest.mark.alone]
+pytestmark = pytest.mark.graph
 STOP_RATE = 0.5
 SMALL = {'actor': {'hidden': [16, 12]}, 'critic': {'hidden': [16, 12]}}
 # A busy machine may hold up a whole process: ages that no pause of it reaches.
@@ -141,6 +141,7 @@ def test_inactive_brings_the_robot_to_stand(walking: Robot) -> None:
     walking.until_it_is(Motion.WALKING)
 
 
+@pytest.mark.alone
 def test_a_stall_is_caught_up_with_and_told(graph) -> None:
     stamps: list[int] = []
     warnings: list[str] = []

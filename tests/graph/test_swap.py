@@ -34,7 +34,7 @@ from trajectory_msgs.msg import JointTrajectory
 
 from hexapod_sim import robot
 
-pytestmark = [pytest.mark.graph, pytest.mark.alone]
+pytestmark = pytest.mark.graph
 SMALL = {'actor': {'hidden': [16, 12]}, 'critic': {'hidden': [16, 12]}}
 AGE_S = 0.4
 LISTEN_S = 0.4

@@ -21,7 +21,7 @@ from hexapod_node.timers import call_every, call_later, call_soon, cancel_all
 from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.node import Node
 
-pytestmark = [pytest.mark.graph, pytest.mark.alone]
+pytestmark = pytest.mark.graph
 Spin = Callable[[float], None]
 
 
@@ -49,6 +49,7 @@ def spin(node: Node) -> Iterator[Spin]:
     executor.shutdown()
 
 
+@pytest.mark.alone
 def test_calls_come_when_they_are_due_and_in_their_order(node: Node, spin: Spin) -> None:
     called: list[tuple[str, float]] = []
     began = time.monotonic()
@@ -60,6 +61,7 @@ def test_calls_come_when_they_are_due_and_in_their_order(node: Node, spin: Spin)
         assert due <= at < due + 0.1
 
 
+@pytest.mark.alone
 def test_a_periodic_call_keeps_its_grid_and_serves_a_pause_once(node: Node, spin: Spin) -> None:
     called: list[float] = []
     began_ns = time.monotonic_ns()
@@ -131,6 +133,7 @@ def test_a_pause_lets_others_have_their_turn(node: Node, spin: Spin) -> None:
 
     call_soon(node, lambda: order.append('other'))
     start(work())
+    spin_until(spin, order)
     spin(0.05)
     assert order == ['other', 'after']
 

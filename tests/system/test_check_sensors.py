@@ -10,7 +10,7 @@ import json
 import pytest
 from rclpy.node import Node
 
-pytestmark = [pytest.mark.system, pytest.mark.alone]
+pytestmark = pytest.mark.system
 DRIVER = (
     'ros2 run hexapod_sim fake_driver --ros-args -r __ns:=/robot -p channel:=imu/data '
     '-p topic:=bno055/data -p frame:=bno055 -p noise:=0.01'

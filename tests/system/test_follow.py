@@ -28,7 +28,7 @@ def ready(shell):
     return shell
 
 
-@pytest.mark.parametrize('composed', ['true', 'false'])
+@pytest.mark.parametrize('composed', ['true', pytest.param('false', marks=pytest.mark.slow)])
 def test_launch_records_and_reports(ready, composed: str) -> None:
     line = f'{LAUNCH} checkpoint:=agent.pt config:=jumps.yaml bag:=bag composed:={composed}'
     ended = ready.run(line)

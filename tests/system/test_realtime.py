@@ -28,7 +28,7 @@ def test_a_robot_is_launched_managed_and_interrupted(shell, agent: str) -> None:
     launch = shell.start(
         f'ros2 launch hexapod_bringup simulated_robot.launch.xml checkpoint:={agent} namespace:=/r'
     )
-    shell.until(lambda: 'drives, observing CE' in shell.output())
+    shell.until(lambda: 'drives, observing CE' in shell.output(), 90.0)
     assert shell.run('ros2 lifecycle get /r/cpg').stdout.strip() == 'active [3]'
     assert 'successful' in shell.run('ros2 lifecycle set /r/cpg deactivate').stdout
     assert shell.run('ros2 lifecycle get /r/cpg').stdout.strip() == 'inactive [2]'
