@@ -6,13 +6,9 @@
 from __future__ import annotations
 
 import copy
-import re
 import time
-from array import array
 from collections import Counter
 from collections.abc import Callable, Sequence
-from functools import cache
-from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -32,18 +28,8 @@ from rclpy.qos import QoSProfile, qos_profile_sensor_data
 from rclpy.task import Future
 from unique_identifier_msgs.msg import UUID
 
-INTEGERS = {
-    f'{sign}int{bits}': (0, 2**bits - 1) if sign else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
-    for sign in ('', 'u')
-    for bits in (8, 16, 32, 64)
-}
-REALS = (0.0, -0.0, 1.0, 1e-300, 1e10, -1e10, 1e300, -1e300, np.nan, np.inf, -np.inf)
-SINGLE = 3e38
-LENGTHS = (0, 1, 2, 6, 17, 18, 19, 500)
-WORDS = (
-    '', 'a', '/', '~', '.', '..', '/odom', 'sim', 'lf_hip', '%s%n', 'ü\n', 'a b', '{}', 'nan',
-    '-1', 'ABCDE', 'ABX', 'article.yaml', 'tripod', '**', '[', 'x' * 300, 'x' * 70_000,
-)  # fmt: skip
+from .hostile_values import HostileValues, import_class, service_class
+
 # What would end a node, or its part in the graph, by its own right.
 SPARED_TRANSITIONS = (5, 6, 7)
 _UNANSWERED = 3000
@@ -75,7 +61,7 @@ class Hostile:
         self.answered = 0
         self.quoted: list[str] = []
         self._random = np.random.default_rng(seed)
-        self._paths = paths
+        self._values = HostileValues(self._random, paths)
         self._secret = secret
         self._context = rclpy.Context()
         rclpy.init(context=self._context, domain_id=domain)
@@ -166,7 +152,7 @@ class Hostile:
                 alive()
             name, type_name = services[self._random.integers(len(services))]
             kind = service_class(type_name)
-            request = self.value(kind.Request, name)
+            request = self._values.value(kind.Request, name)
             if type_name == 'lifecycle_msgs/srv/ChangeState':
                 self._spare(request)
             self._ask(self._client(name, kind), request)
@@ -186,7 +172,7 @@ class Hostile:
             )[number % 2]
             request = kind.Request()
             for _ in range(int(self._random.integers(1, 4))):
-                parameter = self.value(import_class('rcl_interfaces/msg/Parameter'), node)
+                parameter = self._values.value(import_class('rcl_interfaces/msg/Parameter'), node)
                 if known[node] and self._random.random() < 0.7:
                     parameter.name = str(self._random.choice(known[node]))
                 if self._random.random() < 0.7:
@@ -289,7 +275,7 @@ class Hostile:
         """Return a good message with some values spoilt, or one that is made up."""
         good = self._seen.get(name)
         if good is None or self._random.random() < 0.3:
-            return self.value(import_class(type_name), name)
+            return self._values.value(import_class(type_name), name)
         message = copy.deepcopy(good)
         for _ in range(int(self._random.integers(0, 3))):
             self._spoil(message)
@@ -302,89 +288,4 @@ class Hostile:
         if hasattr(inner, 'get_fields_and_field_types') and self._random.random() < 0.8:
             self._spoil(inner)
         else:
-            setattr(message, name, self.field(fields[name], name))
-
-    # Values
-
-    def value(self, kind: type, where: str = '') -> Any:
-        """Return a message of a type with a hostile value in every field."""
-        made: Any = kind()
-        for name, type_name in made.get_fields_and_field_types().items():
-            setattr(made, name, self.field(type_name, name))
-        return made
-
-    def field(self, type_name: str, name: str) -> Any:
-        """Return a hostile value of a field's type."""
-        sequence = re.fullmatch(r'sequence<([^,]+)(?:, (\d+))?>', type_name)
-        fixed = re.fullmatch(r'(.+)\[(\d+)\]', type_name)
-        if sequence or fixed:
-            length = int(fixed[2]) if fixed else int(self._random.choice(LENGTHS))
-            if sequence and sequence[2]:
-                length = min(length, int(sequence[2]))
-            inner = (sequence or fixed)[1]  # type: ignore[index]
-            if '/' in inner:
-                length = min(length, 2)
-            return self._items(inner, name, length, bool(fixed))
-        return self._one(type_name, name)
-
-    def _items(self, inner: str, name: str, length: int, fixed: bool) -> Any:
-        # Requests of megabytes that follow one another get lost on their way out, by DDS.
-        items = [self._one(inner, name) for _ in range(length)]
-        items = [item[:300] if isinstance(item, str) else item for item in items]
-        code = {
-            'double': 'd',
-            'float': 'f',
-            'uint8': 'B',
-            'int8': 'b',
-            'int32': 'i',
-            'uint32': 'I',
-        }
-        if inner in ('octet', 'byte'):
-            return items
-        if fixed and inner in ('double', 'float', 'uint8'):
-            return np.array(items, dtype={'double': 'f8', 'float': 'f4', 'uint8': 'u1'}[inner])
-        return array(code[inner], items) if inner in code else items
-
-    def _one(self, type_name: str, name: str) -> Any:
-        chance = self._random
-        if type_name in INTEGERS:
-            low, high = INTEGERS[type_name]
-            picks = (low, high, 0, 1, high // 2, int(chance.integers(0, 100)))
-            return min(max(picks[chance.integers(len(picks))], low), high)
-        if type_name in ('double', 'float'):
-            value = float(chance.choice(REALS))
-            return float(np.clip(value, -SINGLE, SINGLE)) if type_name == 'float' else value
-        if type_name == 'boolean':
-            return bool(chance.random() < 0.5)
-        if type_name in ('octet', 'byte'):
-            return bytes([int(chance.integers(256))])
-        if type_name.startswith(('string', 'wstring')):
-            return self._text(name)
-        return self.value(import_class(type_name), name)
-
-    def _text(self, name: str) -> str:
-        paths = name in ('bag', 'checkpoint') or self._random.random() < 0.1
-        pool = self._paths if paths and self._random.random() < 0.8 else WORDS
-        return str(pool[self._random.integers(len(pool))])
-
-
-@cache
-def import_class(type_name: str) -> Any:
-    """Return the class of 'package/msg/Type', or of the 'package/Type' of a field."""
-    package, *_, name = type_name.split('/')
-    part = re.fullmatch(r'(.+)_(Goal|Result|Feedback|FeedbackMessage)', name)
-    if part:
-        action = getattr(import_module(f'{package}.action'), part[1])
-        return getattr(action.Impl if part[2] == 'FeedbackMessage' else action, part[2])
-    return getattr(import_module(f'{package}.msg'), name)
-
-
-@cache
-def service_class(type_name: str) -> Any:
-    """Return the class of a service, those of actions included."""
-    package, kind, name = type_name.split('/')
-    module = import_module(f'{package}.{kind}')
-    action = re.fullmatch(r'(.+)_(SendGoal|GetResult)', name)
-    if kind == 'action' and action:
-        return getattr(getattr(module, action[1]).Impl, f'{action[2]}Service')
-    return getattr(module, name)
+            setattr(message, name, self._values.field(fields[name], name))
