@@ -271,7 +271,7 @@ def test_process_that_breaks_down_is_named_and_its_row_stays_due(arguments, dige
     os.kill(first, signal.SIGKILL)
     told = parent.communicate(timeout=120.0)[1]
     assert 'ended with status -9, see' in told
-    assert run_fleet.main(given) == 0
+    assert run_fleet.main(arguments(tmp_path)) == 0
     assert campaign_digests(tmp_path) == digests
 
 
