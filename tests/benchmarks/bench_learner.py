@@ -11,6 +11,12 @@ sbx (JAX, a group of updates in one compiled loop) and RLtools (C++). RLtools ha
 layers of unequal width: its TD3, with hidden layers of 350, stands beside its own bare products.
 All are held to one core; times are processor time, the best of several rounds: other load only
 ever adds. GFLOP/s counts the matrix products of the formulas alone.
+
+The bare products are made by torch, which ours takes, and by numpy's BLAS; the title says which
+instructions torch takes. A host with AVX2 alone is imitated by the environment variables
+ATEN_CPU_CAPABILITY=avx2, ONEDNN_MAX_CPU_ISA=AVX2, MKL_ENABLE_INSTRUCTIONS=AVX2 and
+OPENBLAS_CORETYPE=ZEN. XLA heeds none of these, nor a mask of its own (a product of cubes of 1024
+ran at 210 GFLOP/s, more than AVX2 can do): sbx is comparable on a real one only.
 """
 
 import argparse
@@ -22,6 +28,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+os.environ['OPENBLAS_NUM_THREADS'] = '1'  # read when numpy is imported
+
+import numpy as np
 import stable_baselines3
 import torch
 from hexapod_agent.environment.env import HexapodLine
@@ -36,6 +45,7 @@ PEERS = Path(__file__).parent / 'peers'
 WIDTH = 350
 ROUNDS, REPEATS = 15, 50
 BARE = 'bare products, float32_fast'
+Product = Callable[..., object]
 
 
 def milliseconds(call: Callable[[], object], repeats: int = REPEATS) -> float:
@@ -70,8 +80,8 @@ def update_products(batch: int, sizes: Sequence[int], critics: int = 1) -> Shape
     ]  # fmt: skip
 
 
-def multiply(shapes: Shapes) -> Callable[[], None]:
-    """Return a call of these products, and of nothing else."""
+def multiply(shapes: Shapes, product: Product = torch.mm) -> Callable[[], None]:
+    """Return a call of these products by a library, and of nothing else."""
     operands = [
         (torch.randn(rows, inner), torch.randn(inner, columns), torch.empty(rows, columns))
         for rows, inner, columns in shapes
@@ -79,9 +89,14 @@ def multiply(shapes: Shapes) -> Callable[[], None]:
 
     def run() -> None:
         for left, right, out in operands:
-            torch.mm(left, right, out=out)
+            product(left, right, out=out)
 
     return run
+
+
+def numpys_product(left: torch.Tensor, right: torch.Tensor, *, out: torch.Tensor) -> None:
+    """Let numpy's BLAS multiply."""
+    np.matmul(left.numpy(), right.numpy(), out=out.numpy())
 
 
 def gflop(shapes: Shapes) -> float:
@@ -164,9 +179,12 @@ def main() -> None:
         trainer, env
     )
     references[BARE] = milliseconds(multiply(shapes))
+    references['bare products, numpy'] = milliseconds(multiply(shapes, numpys_product))
     torch.set_float32_matmul_precision('highest')
     references["bare products, torch's default"] = milliseconds(multiply(shapes))
-    show('DDPG, hidden layers of 400 and 300', ours, references, gflop(shapes))
+    capability = torch.backends.cpu.get_cpu_capability()
+    title = f'DDPG, hidden layers of 400 and 300; torch takes {capability}'
+    show(title, ours, references, gflop(shapes))
     if peers:
         shapes = update_products(learner.ddpg.batch_size, (sizes[0], WIDTH, WIDTH, ACTION_SIZE), 2)
         torch.set_float32_matmul_precision('medium')
