@@ -12,9 +12,9 @@ INTERFACES := $(shell find ros_ws/src/hexapod_interfaces -type f 2>/dev/null)
 INSTALLED := $(shell find $(CODE) -name setup.py -o -name setup.cfg -o -name package.xml -o -name '*.xml' \
 	-o -name '*.yaml' -o -name '*.html*' -o -name '*.launch.xml' -o -name '*.urdf' -o -name '*.json' -not -path '*/__pycache__/*' 2>/dev/null)
 ENTER := export HEXAPOD_VENV='$(abspath $(VENV))'; source setup.bash
-# Test processes at once: one more than cores, as tests also wait. WORKERS=0 runs the tests one after
+# Test processes at once: two for each core, as tests also wait. WORKERS=0 runs the tests one after
 # another, in this process.
-WORKERS ?= $(shell cores=$$(nproc); echo $$((cores < 8 ? cores + 1 : 8)))
+WORKERS ?= $(shell cores=$$(nproc); echo $$((cores < 4 ? 2 * cores : 8)))
 BESIDE := -n $(WORKERS) --dist loadfile --no-loadscope-reorder
 DEMO := bags/demo
 DEMO_EPISODES := 4

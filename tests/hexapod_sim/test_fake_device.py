@@ -66,14 +66,15 @@ def test_what_is_written_is_read_and_fits_the_message(channel, topic, task) -> N
 @pytest.mark.parametrize(('channel', 'topic'), TOPICS)
 def test_a_perfect_device_changes_no_bit(channel, topic, task) -> None:
     found = of_device(device(channel=channel), topic, message(topic, task))
-    assert serialize_message(found) == serialize_message(message(topic, task))
+    assert found == message(topic, task)  # serialised, bytes of padding may differ
 
 
 @pytest.mark.parametrize(('channel', 'fault'), FAULTS)
 def test_a_fault_changes_the_message_and_can_still_be_sent(channel, fault, task) -> None:
     for topic in DEVICES[channel].topics:
         broken = of_device(device(channel=channel), topic, message(topic, task), fault)
-        assert serialize_message(broken) != serialize_message(message(topic, task))
+        deserialize_message(serialize_message(broken), type(broken))
+        assert broken != message(topic, task)
 
 
 def test_faults_are_listed_by_channel() -> None:
